@@ -1,6 +1,7 @@
-"""One picture of a run: its key moments side by side, thermal above colour, tracks and truth drawn in.
+"""Draw the contact sheet of a run: its key moments in columns, with tracks and ground truth drawn in.
 
-What further cameras saw stands below, with their names.
+Each moment shows the thermal image above the colour image, then the images of further cameras, with their
+names.
 """
 
 import json
@@ -61,7 +62,7 @@ def draw_head(page: Image.Image, title: str, length: str, *, has_truth: bool = T
 
 
 def cut(draw: ImageDraw.ImageDraw, text: str, letters: ImageFont.FreeTypeFont, room_px: float) -> str:
-    """Cut a text to fit."""
+    """Shorten a text with an ellipsis until it fits a width."""
     while draw.textlength(text, letters) > room_px:
         text = f"{text[:-2]}…"
     return text
@@ -69,7 +70,7 @@ def cut(draw: ImageDraw.ImageDraw, text: str, letters: ImageFont.FreeTypeFont, r
 
 @cache
 def font(size: int, *, is_bold: bool = False) -> ImageFont.FreeTypeFont:
-    """Return the letters of all sheets."""
+    """Return the font of all sheets in a size."""
     name = "DejaVuSans-Bold.ttf" if is_bold else "DejaVuSans.ttf"
     return ImageFont.truetype(Path(matplotlib.get_data_path(), "fonts", "ttf", name), size)
 
@@ -84,13 +85,13 @@ _WIDE: Final = 2.5  # times as wide as high
 _AXIS_PX: Final = 18
 _NAME_PX: Final = 19
 _TICKS_DEG: Final = (180, 90, 0, -90, -180)
-_NOTE: Final = "Moments"  # of the PNG: where each tile is, and what it shows
+_NOTE: Final = "Moments"  # key of the PNG text that lists the place and content of each tile
 _CHIP: Final[Rgb] = (58, 64, 74)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tile:
-    """One moment of a sheet that was read back: its images without the caption, and what that says."""
+    """One moment of a sheet that was read back: its images without the caption, and the caption's text."""
 
     picture: Image.Image
     words: str
@@ -100,8 +101,8 @@ class ContactSheet:
     """Collects the key moments of a run and draws them.
 
     Args:
-        title: what stands above them.
-        robot: whose cameras they are; the default robot's if None.
+        title: heading of the sheet.
+        robot: the robot that carries the cameras; the default robot if None.
     """
 
     def __init__(self, title: str, robot: RobotConfig | None = None) -> None:
@@ -111,7 +112,7 @@ class ContactSheet:
         self._last: Tick | None = None
 
     def add(self, tick: Tick, events: Sequence[LogLine]) -> None:
-        """Look at one tick and what happened at it; few ticks are kept."""
+        """Add one tick and its events; only a few ticks are kept."""
         self._moments.add(tick, events)
         self._last = tick
 
@@ -130,7 +131,7 @@ class ContactSheet:
         return self._drawn()[0]
 
     def _drawn(self) -> tuple[Image.Image, PngInfo]:
-        """Draw it, and note where each moment's images are (left, top, right, bottom), and what it shows."""
+        """Draw the sheet, with a note of each moment's box (left, top, right, bottom) and caption."""
         moments = self._moments.choose(MOMENTS)
         tiles = [self._tile(moment) for moment in moments]
         rows = [slice(start, start + COLUMNS) for start in range(0, len(tiles), COLUMNS)]
@@ -183,7 +184,7 @@ class ContactSheet:
         return self._with_tracks("colour", picture, moment.tracks, scale, moment.explanation, [])
 
     def _further_picture(self, shot: Shot, beside: int, moment: KeyMoment) -> Picture:
-        """Draw what a further camera saw, with tracks, truth where it has boxes, name and how old it is."""
+        """Draw the image of a further camera with its tracks, ground truth boxes if any, name and age."""
         scale = _fitting_scale(shot.image, _share(beside))
         config = self._robot.cameras[shot.camera]
         picture, camera = enlarge(as_picture(shot.image), scale), config.camera
@@ -209,31 +210,31 @@ class ContactSheet:
 
 
 def _rows_of(shots: Sequence[Shot]) -> list[Sequence[Shot]]:
-    """Put further cameras into rows: two beside each other, then those with wide images alone."""
+    """Arrange further cameras in rows: two side by side, then each wide image in a row of its own."""
     wide = [shot for shot in shots if shot.image.shape[1] > _WIDE * shot.image.shape[0]]
     others = [shot for shot in shots if shot.image.shape[1] <= _WIDE * shot.image.shape[0]]
     return [*(others[k : k + 2] for k in range(0, len(others), 2)), *([shot] for shot in wide)]
 
 
 def _fitting_scale(image: Picture, room_px: int) -> float:
-    """How much to enlarge an image to fill some width, but to be no more than twice as high."""
+    """Return the scale at which an image fills a width and is at most twice as high as that width."""
     height, width = image.shape[:2]
     return float(min(room_px / width, 2.0 * room_px / height))
 
 
 def _share(pictures: int) -> int:
-    """Width [px] of each of so many pictures beside each other."""
+    """Return the width [px] of each picture in a row of this many."""
     return (_TILE - _SEAM * (pictures - 1)) // pictures
 
 
 def _framed(picture: Picture, name: str) -> Picture:
-    """Put a panorama, whose picture is low, between its name and an axis of bearings."""
+    """Add a name above a panorama and an axis of bearings below it."""
     above = np.full((_NAME_PX, *picture.shape[1:]), PAGE, np.uint8)
     return _named(np.concatenate([above, picture, _bearings(picture.shape[1])]), name)
 
 
 def _named(picture: Picture, name: str) -> Picture:
-    """Write a name into the upper left corner of a picture."""
+    """Write a name in the upper left corner of a picture."""
     page = Image.fromarray(picture)
     draw = ImageDraw.Draw(page)
     draw.rectangle((0, 0, draw.textlength(name, font(12)) + 10, _NAME_PX - 1), PAGE)
@@ -242,7 +243,7 @@ def _named(picture: Picture, name: str) -> Picture:
 
 
 def _bearings(width: int) -> Picture:
-    """Draw the axis of bearings of a panorama that is so wide."""
+    """Draw the axis of bearings of a panorama with this width [px]."""
     axis = Image.new("RGB", (width, _AXIS_PX), PAGE)
     draw, letters = ImageDraw.Draw(axis), font(11)
     for bearing in _TICKS_DEG:
@@ -255,10 +256,10 @@ def _bearings(width: int) -> Picture:
 
 
 def read_tiles(path: Path) -> list[Tile]:
-    """Cut a sheet that was saved into its tiles; the whole sheet is one if it does not say where they are.
+    """Read the tiles of a saved sheet; without a note of their places the whole sheet is one tile.
 
     Raises:
-        BadInput: there is no such picture.
+        BadInput: the picture is missing or unreadable.
     """
     try:
         with Image.open(path) as opened:
@@ -271,7 +272,7 @@ def read_tiles(path: Path) -> list[Tile]:
 
 
 def _caption(tile: Image.Image, moment: KeyMoment) -> None:
-    """Write time, mode and what happened above the images."""
+    """Write time, mode and events above the images."""
     draw = ImageDraw.Draw(tile)
     draw.text((0, 11), f"{moment.time_s:.1f} s", STRONG, font(17, is_bold=True), anchor="lm")
     start = draw.textlength(f"{moment.time_s:.1f} s", font(17, is_bold=True)) + 10
@@ -283,7 +284,7 @@ def _caption(tile: Image.Image, moment: KeyMoment) -> None:
 
 
 def _fitting(draw: ImageDraw.ImageDraw, words: Sequence[str], letters: ImageFont.FreeTypeFont) -> str:
-    """Join as many texts as fit above a tile; cut the first if even that one does not fit."""
+    """Join as many texts as fit above a tile; shorten the first if it does not fit by itself."""
     text = words[0]
     for more in words[1:]:
         if draw.textlength(f"{text}; {more}", letters) > _TILE:

@@ -1,4 +1,4 @@
-"""Draw the plan of a scenario: the place, warm things, walking paths with times, and the robot's view."""
+"""Draw the plan of a scenario: the place, warm objects, walking paths with times, and the robot's view."""
 
 import textwrap
 from pathlib import Path
@@ -32,11 +32,11 @@ from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.sim.world_config import WorldConfig
 
 _PERSON, _ROBOT = "#1f6fb4", "#c0392b"
-_TIMES: Final = "Times are those of people whom nobody is in the way of; those who make way are later."
+_TIMES: Final = "Times hold for people who walk undisturbed; people who give way to others arrive later."
 
 
 def draw_legend(figure: Figure, side_in: float, *, has_moves: bool) -> None:
-    """Write at the foot of a plan what its signs mean; those of moved things where there are any."""
+    """Draw the legend at the foot of a plan; symbols of moved objects only if the plan has any."""
     width, height = figure.get_size_inches()
     figure.legend(
         handles=[*_signs(), *([_ghost()] if has_moves else [])],
@@ -54,7 +54,7 @@ def draw_legend(figure: Figure, side_in: float, *, has_moves: bool) -> None:
 
 
 def _ghost() -> Artist:
-    label = "where a thing is moved to, from when on, and by whom"
+    label = "where an object is moved to, the time, and the person who moves it"
     return Patch(facecolor="none", edgecolor=COLOUR, ls=(0, (2, 1.5)), label=label)
 
 
@@ -64,22 +64,22 @@ def _signs() -> list[Artist]:
         return Line2D([], [], label=label, **(settings | more))  # type: ignore[arg-type]
 
     return [
-        mark("o", "a person's start, name, height, and when they come or go", markeredgecolor="white"),
+        mark("o", "a person's start, name, height, arrival and departure", markeredgecolor="white"),
         mark("o", "where the person is at that time", linestyle="-", markerfacecolor="white", markersize=4),
-        mark("s", "end of the way: stays, leaves, or the run ends", markeredgecolor="white", markersize=5),
-        mark("o", "a pause on the way", markerfacecolor="none", markersize=9),
+        mark("s", "end of the path: stays, leaves, or the run ends", markeredgecolor="white", markersize=5),
+        mark("o", "a pause on the path", markerfacecolor="none", markersize=9),
         mark(">", "the robot's start", _ROBOT),
         Line2D(
-            [], [], color=_ROBOT, ls=(0, (4, 2)), lw=1.4, label="its scripted way; distances of 3 and 10 m"
+            [], [], color=_ROBOT, ls=(0, (4, 2)), lw=1.4, label="its scripted path; distances of 3 and 10 m"
         ),
-        Patch(facecolor=_ROBOT, alpha=0.14, label="what the camera sees at first; darker: people count"),
+        Patch(facecolor=_ROBOT, alpha=0.14, label="initial field of view; darker: people are counted"),
         Patch(facecolor="none", edgecolor="#d2592f", ls=(0, (3, 2)), label="hangs overhead, or a lintel"),
     ]
 
 
 _PEOPLE = ("#1f6fb4", "#2f7d32", "#7b3fa0", "#a8327a", "#00798c", "#5d4a1f", "#9a6700", "#4a4a4a", "#6d7500")
 _WIDTH_IN, _HEAD_IN, _FOOT_IN, _SIDE_IN, _DPI = 11.0, 0.85, 1.3, 0.25, 130
-_BAR_IN = 0.9  # for the scale of temperatures on the right
+_BAR_IN = 0.9  # room for the temperature scale on the right
 
 
 def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
@@ -87,8 +87,8 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
 
     Args:
         scenario: what to draw.
-        seed: whose variations to draw.
-        path: of the picture, such as plan.png.
+        seed: seed of the variations.
+        path: file of the picture, such as plan.png.
     """
     config = scenario.world(seed)
     figure = Figure(dpi=_DPI, facecolor=PAPER)
@@ -110,8 +110,8 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
         if not path.parent.exists():
             path.parent.mkdir(parents=True)
         try:
-            if not path.suffix:  # to which one would be put, unasked
-                raise ValueError("it has no ending")
+            if not path.suffix:  # matplotlib would append one
+                raise ValueError("it has no suffix")
             figure.savefig(path, dpi=_DPI)
         except ValueError as error:
             raise BadInput(
@@ -144,10 +144,10 @@ def _caption(figure: Figure, scenario: Scenario, seed: int) -> None:
 
 
 def _temperatures(figure: Figure, found: list[Axes]) -> None:
-    """What the colours of things mean, beside the plan."""
+    """Draw the temperature scale of objects beside the plan."""
     top, bottom = found[0].get_position().y1, found[-1].get_position().y0
     height = min(0.85 * (top - bottom), 3.5 / figure.get_figheight())
     bar = figure.add_axes((1.0 - 0.72 / _WIDTH_IN, (top + bottom - height) / 2.0, 0.12 / _WIDTH_IN, height))
     figure.colorbar(ScalarMappable(SPAN_C, WARMTH), cax=bar, extend="both")
-    bar.set_title("things, °C", size=8, color=INK)
+    bar.set_title("objects, °C", size=8, color=INK)
     bar.tick_params(labelsize=7, colors=INK)

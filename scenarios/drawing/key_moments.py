@@ -1,4 +1,4 @@
-"""Choose the few moments of a run that tell its story, while it goes and without keeping it all."""
+"""Choose the few key moments of a run while it is running, without keeping every tick."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -16,7 +16,7 @@ from peopleboy.sim.truth.events import TOTAL_STARTS
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.track import Status, Track
 
-# What a moment may be about, the most telling first, and how many of each kind are kept.
+# Kinds of moments, the most important first, and how many of each kind are kept.
 _KINDS = {
     "start": 1,
     "detected": 3,
@@ -42,14 +42,14 @@ _SPARE = 24
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shot:
-    """The newest image of a further camera at some instant.
+    """The newest image of a further camera at one instant.
 
     Attributes:
         camera: its name.
         time_s: [s] when it was taken.
-        image: (H, W) or (H, W, 3), 8 bits, as people are shown it.
-        people: what was true in it.
-        tracks: what the tracker made of it.
+        image: (H, W) or (H, W, 3), 8 bits, prepared for display.
+        people: ground truth of the people in it.
+        tracks: the tracker's tracks.
     """
 
     camera: str
@@ -61,15 +61,15 @@ class Shot:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyMoment:
-    """What is needed to draw one instant.
+    """The data needed to draw one instant.
 
     Attributes:
         frame, time_s, mode: as in the tick.
-        thermal, colour: (H, W) and (H, W, 3) what the cameras saw, as people are shown it.
-        further: what the other cameras saw last.
-        tracks, explanation: what the tracker made of it, and its explanation.
-        people: what was true.
-        words: what happened, the most telling first.
+        thermal, colour: (H, W) and (H, W, 3) images of the cameras, prepared for display.
+        further: newest images of the other cameras.
+        tracks, explanation: the tracker's tracks, and its explanation of them.
+        people: ground truth.
+        words: events, the most important first.
     """
 
     frame: int
@@ -84,7 +84,7 @@ class KeyMoment:
     words: tuple[str, ...] = ()
 
 
-# Says what a moment is about, of the one that is shown, which may be another just before or after.
+# Describes a moment from the moment that is shown, which may be a neighbour of the one it was made for.
 Words = Callable[[KeyMoment], str]
 
 
@@ -97,10 +97,10 @@ class _Occlusion:
 
 
 class KeyMoments:
-    """Collects moments while a run goes: about 60 at most, however long it is.
+    """Collects moments during a run: about 60 at most, however long the run is.
 
     Args:
-        cameras: that the robot has, by name.
+        cameras: the robot's cameras by name.
     """
 
     def __init__(self, cameras: Mapping[str, CameraConfig]) -> None:
@@ -114,7 +114,7 @@ class KeyMoments:
         self._stride = 1
 
     def add(self, tick: Tick, events: Sequence[LogLine]) -> None:
-        """Look at one tick and what happened at it."""
+        """Add one tick and its events."""
         self._newest |= {shot.camera: shot for shot in _further(tick, self._cameras)}
         moment = _moment(tick, tuple(self._newest.values()))
         if not self._spare:
@@ -127,24 +127,24 @@ class KeyMoments:
         self._keep_spare(moment)
 
     def choose(self, count: int) -> list[KeyMoment]:
-        """Choose at most `count` moments: what happened, then others as far from them as can be; in time."""
+        """Return at most `count` moments in time order: events, then moments as far from them as possible."""
         chosen: list[KeyMoment] = []
         words: dict[int, tuple[str, ...]] = {}
-        # The first of every kind comes before the second of any.
+        # The first moment of every kind is chosen before the second of any kind.
         for _, (moment, say) in sorted(
             self._kept.items(), key=lambda item: (item[0][1], _ORDER[item[0][0]], item[1][0].frame)
         ):
             same = next((m for m in chosen if abs(m.time_s - moment.time_s) < _NEAR_S), None)
             if same is not None:
                 words[same.frame] += (say(same),)
-            elif len(chosen) < count - count // 6:  # the rest is for what happens when nothing does
+            elif len(chosen) < count - count // 6:  # the rest is reserved for moments without an event
                 chosen.append(moment)
                 words[moment.frame] = (say(moment),)
         self._fill(chosen, count)
         return [_with_words(m, words.get(m.frame, ())) for m in sorted(chosen, key=lambda m: m.frame)]
 
     def _keep_new(self, kind: str, moment: KeyMoment, say: Words) -> tuple[str, int] | None:
-        """Keep a moment of this kind if there are not too many yet, and return where."""
+        """Keep a moment of this kind if there is room for it, and return its key."""
         slot = (kind, self._counts[kind])
         if slot[1] >= _KINDS.get(kind, 0):
             return None
@@ -179,7 +179,7 @@ class KeyMoments:
                 self._kept[("closest", 0)] = (moment, partial(_always, text))
 
     def _keep_spare(self, moment: KeyMoment) -> None:
-        """Keep every n-th moment, n doubling whenever there are too many."""
+        """Keep every n-th moment as a spare; n doubles whenever there are too many."""
         if (moment.frame - 1) % self._stride == 0:
             self._spare.append(moment)
         if len(self._spare) > _SPARE:
@@ -187,7 +187,7 @@ class KeyMoments:
             self._spare = [m for m in self._spare if (m.frame - 1) % self._stride == 0]
 
     def _fill(self, chosen: list[KeyMoment], count: int) -> None:
-        """Add spare moments, each time the one farthest from all that are chosen."""
+        """Add spare moments, each time the one farthest from all chosen moments."""
         while len(chosen) < count:
             gaps = [min(abs(spare.frame - m.frame) for m in chosen) for spare in self._spare]
             if not gaps or max(gaps) == 0:
@@ -200,7 +200,7 @@ def _always(text: str, moment: KeyMoment) -> str:  # noqa: ARG001
 
 
 def _hidden(person: PersonTruth, other: str, moment: KeyMoment) -> str:
-    """Return how much one hides of another at a moment, which may be shown instead of the worst one."""
+    """Describe how much of a person another one hides at the moment that is shown."""
     shown = next((one for one in moment.people if one.name == person.name), person)
     hidden = shown.hidden_inside(other)
     if hidden > TOTAL_STARTS:
@@ -209,7 +209,7 @@ def _hidden(person: PersonTruth, other: str, moment: KeyMoment) -> str:
 
 
 def _further(tick: Tick, cameras: Mapping[str, CameraConfig]) -> Iterator[Shot]:
-    """Return what cameras took beside the two whose images everybody has."""
+    """Return the newest images of the cameras other than thermal and colour."""
     for name in (name for name in tick.truths if name not in ("thermal", "colour")):
         senses, truth = tick.observation, tick.truths[name]
         image = shown_to_people(senses.images, name, cameras[name])
@@ -232,7 +232,7 @@ def _moment(tick: Tick, further: tuple[Shot, ...]) -> KeyMoment:
 
 
 def _with_words(moment: KeyMoment, words: tuple[str, ...]) -> KeyMoment:
-    """Describe what happened, or else who is there."""
+    """Describe the events of a moment, or, without any, how many people are in view and tracked."""
     if not words:
         seen = sum(person.visible_px > 0 for person in moment.people)
         sure = sum(track.status is not Status.TENTATIVE for track in moment.tracks)

@@ -1,7 +1,7 @@
-"""Draw tracks and truth on images.
+"""Draw tracks and ground truth on images.
 
-Everything is given in pixels of the camera's own image and drawn on an enlarged one, so that lines stay thin
-against people.
+Coordinates are pixels of the camera's own image. They are drawn on an enlarged image, so that lines stay thin
+compared with people.
 """
 
 import math
@@ -34,9 +34,9 @@ Line = NDArray[np.float64]  # (K, 2) [px] in the thermal image
 
 @singledispatch
 def lines_of(explanation: object, points: int = 48) -> Mapping[int, tuple[Line, ...]]:  # noqa: ARG001
-    """Return lines of so many points around people, by track id; none for a kind that nobody can draw.
+    """Return lines around people by track id, sampled at this many points; none for an unknown kind.
 
-    A new kind of explanation registers here how it is drawn on still pictures.
+    A new kind of explanation registers its drawing function for still pictures here.
     """
     return {}
 
@@ -69,37 +69,37 @@ _DASH_PX = 8.0
 _EDGE: Rgb = (20, 20, 20)
 _UNTURNED = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 _DIM = 0.6  # of a tentative track
-_MOVES = (0, 1, 2, 3, -1, -2, 4, 5)  # rows by which a label gives way to others, away from its box first
+_MOVES = (0, 1, 2, 3, -1, -2, 4, 5)  # rows by which a label is shifted to avoid others
 _SHORT = {Status.PARTLY_OCCLUDED: " partly", Status.TOTALLY_OCCLUDED: " hidden"}
 
 
 class TrueBox(Protocol):
-    """What is drawn of the truth about a person."""
+    """The ground truth of a person that is drawn."""
 
     @property
     def name(self) -> str:
-        """As in the scenario."""
+        """Name in the scenario."""
         ...
 
     @property
     def box(self) -> Box | None:
-        """The truth box; None behind the camera."""
+        """Ground truth box; None behind the camera."""
         ...
 
     @property
     def visible_fraction(self) -> float:
-        """Share of the whole silhouette that is seen."""
+        """Visible share of the whole silhouette."""
         ...
 
 
 def enlarge(image: Picture, scale: float = SCALE) -> Picture:
-    """Make an (H, W, 3) image `scale` times as large, or small, smoothly."""
+    """Resize an (H, W, 3) image by the factor `scale` with interpolation."""
     way = cv2.INTER_CUBIC if scale > 1 else cv2.INTER_AREA
     return np.asarray(cv2.resize(image, None, fx=scale, fy=scale, interpolation=way), np.uint8)
 
 
 def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
-    """Turn an (H, W) thermal image into an RGB picture of the same size, in one of `PALETTES`."""
+    """Convert an (H, W) thermal image to an RGB picture of the same size, in one of `PALETTES`."""
     colours = PALETTES[palette]
     if colours is None:
         return np.asarray(cv2.cvtColor(thermal, cv2.COLOR_GRAY2RGB), np.uint8)
@@ -107,20 +107,20 @@ def show_thermal(thermal: NDArray[np.uint8], palette: str = "grey") -> Picture:
 
 
 def show_image(images: Mapping[str, NDArray[Any]], name: str, config: CameraConfig) -> Picture:
-    """Turn what a camera took into a picture of the same size, as its kind is shown to people."""
+    """Convert a camera's image to a picture of the same size, as its kind of camera is displayed."""
     return as_picture(shown_to_people(images, name, config))
 
 
 def as_picture(shown: NDArray[np.uint8]) -> Picture:
-    """Turn (H, W) grey into RGB; (H, W, 3) RGB stays."""
+    """Convert (H, W) grey to RGB; return (H, W, 3) RGB as it is."""
     return show_thermal(shown) if shown.ndim == 2 else shown
 
 
 def encode_jpeg(image: NDArray[np.uint8], quality: int, *, has_own_codes: bool = True) -> bytes:
     """Encode an (H, W) grey or (H, W, 3) RGB image; quality 0..100.
 
-    Codes of its own make one image smaller. Many images that are packed together are smaller if they share
-    the standard's.
+    Optimised Huffman codes make a single image smaller. Many images that are compressed together are smaller
+    if they share the standard codes.
     """
     stored = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
     options = [cv2.IMWRITE_JPEG_QUALITY, quality, cv2.IMWRITE_JPEG_OPTIMIZE, int(has_own_codes)]
@@ -128,7 +128,7 @@ def encode_jpeg(image: NDArray[np.uint8], quality: int, *, has_own_codes: bool =
 
 
 def encode_png(image: NDArray[np.uint8] | NDArray[np.uint16]) -> bytes:
-    """Encode an (H, W) grey image of 8 or 16 bits, or an (H, W, 3) RGB one, quickly and without loss."""
+    """Encode an (H, W) grey image of 8 or 16 bits, or an (H, W, 3) RGB image, fast and lossless."""
     stored = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
     return cv2.imencode(".png", stored, [cv2.IMWRITE_PNG_COMPRESSION, 1])[1].tobytes()
 
@@ -142,18 +142,18 @@ def draw_tracks(
     plates: list[Plate] | None = None,
     camera: str = THERMAL,
 ) -> Picture:
-    """Draw boxes, ids, confidence and status of tracks, and what their tracker explains of them.
+    """Draw boxes, ids, confidence and status of tracks, and the tracker's explanation of them.
 
-    Tentative ones are dim, and their label is their id with a question mark.
+    Tentative tracks are dim and labelled with their id and a question mark.
 
     Args:
-        picture: the camera's image, `scale` times enlarged; it stays as it is.
-        tracks: what to draw.
-        scale: how much the picture is enlarged.
+        picture: the camera's image, enlarged `scale` times; it is not modified.
+        tracks: the tracks to draw.
+        scale: enlargement of the picture.
         explanation: their tracker's explanation; None to draw the boxes alone.
         affine: (2, 3) thermal pixels to the picture's, before enlarging; None for the thermal image itself.
-        plates: where labels are already, which these give way to; theirs are added.
-        camera: whose boxes; tracks without any are left out.
+        plates: places of earlier labels, which are avoided; those of new labels are appended.
+        camera: the camera whose boxes are drawn; tracks without a box there are omitted.
     """
     canvas, placed = (
         picture.copy(),
@@ -170,7 +170,7 @@ def draw_tracks(
         around = outlines.get(track.id, ())
         lines = [(box_corners(box), 1 if around else body)]
         lines += [(line @ mapping[:, :2].T + mapping[:, 2], body) for line in around]
-        # Dark edges set the lines off from garments of their own colour.
+        # Dark edges keep the lines visible on clothes of the same colour.
         for shade, extra in ((_EDGE, 1), (colour, 0)):
             for line, thickness in lines:
                 draw_line(canvas, line, shade, scale, thickness + extra)
@@ -192,8 +192,8 @@ def draw_tracks_of(
 ) -> Picture:
     """Draw tracks by their boxes in the image of any camera; other arguments as in `draw_tracks`.
 
-    On the colour image, boxes of the thermal one stand in for its own where there are none. Explanations are
-    of thermal images.
+    On the colour image, a track without a box there is drawn by its thermal box. Explanations belong to
+    thermal images.
     """
     if camera == "colour" and not any(camera in track.boxes for track in tracks):
         return draw_tracks(picture, tracks, scale, explanation, colour_from_thermal(cameras), plates)
@@ -209,7 +209,7 @@ def draw_truth(
     affine: Matrix | None = None,
     plates: list[Plate] | None = None,
 ) -> Picture:
-    """Draw thin dashed boxes, with name and visible share under them; arguments as in `draw_tracks`."""
+    """Draw ground truth as thin dashed boxes with name and visible share; arguments as in `draw_tracks`."""
     canvas = picture.copy()
     taken = [] if plates is None else plates
     for person in people:
@@ -226,14 +226,14 @@ def draw_truth(
 
 
 def map_box(box: Box, affine: Matrix) -> Box:
-    """Map a box by a (2, 3) affine that does not turn it, or take the upright box around the turned one."""
+    """Map a box by a (2, 3) affine; return the upright box around the result if the affine rotates."""
     points = box_corners(box) @ affine[:, :2].T + affine[:, 2]
     (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
     return float(left), float(top), float(right - left), float(bottom - top)
 
 
 def box_parts(box: Box, camera: CameraGeometry) -> tuple[Box, ...]:
-    """Cut a box that goes on over a panorama's seam into its parts at the right border and at the left."""
+    """Split a box across a panorama's seam into its parts at the right and at the left border."""
     around = around_px(camera)
     if math.isinf(around):
         return (box,)
@@ -245,7 +245,7 @@ def box_parts(box: Box, camera: CameraGeometry) -> tuple[Box, ...]:
 
 
 def people_parts(people: Iterable[PersonTruth], camera: CameraGeometry) -> list[PersonTruth]:
-    """Return people as they are drawn: who stands across the seam twice, with a part of the box each time."""
+    """Return people as they are drawn: a person across the seam twice, each time with one part of the box."""
     return [
         replace(person, box=part)
         for person in people
@@ -255,7 +255,7 @@ def people_parts(people: Iterable[PersonTruth], camera: CameraGeometry) -> list[
 
 
 def track_parts(tracks: Iterable[Track], name: str, camera: CameraGeometry) -> list[Track]:
-    """Return tracks with a box in the camera of a name as they are drawn, as in `people_parts`."""
+    """Return the tracks with a box in a camera as they are drawn: split at the seam as in `people_parts`."""
     return [
         replace(track, boxes={**track.boxes, name: part})
         for track in tracks
@@ -273,8 +273,8 @@ def box_corners(box: Box) -> NDArray[np.float64]:
 def draw_line(
     canvas: Picture, points: NDArray[np.float64], colour: Rgb, scale: float = 1, thickness: int = 1
 ) -> None:
-    """Draw a smooth line through points (K, 2) of the camera's image onto its enlarged picture, in place."""
-    # Pixel (0, 0) spans -0.5..0.5, so its enlarged copy does not begin at scale * 0.
+    """Draw an antialiased line through points (K, 2) [px] of the image on its enlarged picture, in place."""
+    # Pixel (0, 0) spans -0.5..0.5, so its enlarged copy does not start at scale * 0.
     enlarged = (points + 0.5) * scale - 0.5
     fixed = np.round(np.clip(enlarged, -1e4, 1e4) * (1 << _SUBPIXEL_BITS)).astype(np.int32)
     cv2.polylines(canvas, [fixed], False, colour, thickness, cv2.LINE_AA, _SUBPIXEL_BITS)
@@ -308,8 +308,8 @@ def _label(
     taken: list[Plate],
     is_below: bool = False,
 ) -> None:
-    """Write on a dark plate above or below a box, inside the picture and clear of other plates."""
-    # Letters grow with the picture, but a small image that is much enlarged is no larger picture.
+    """Write a label on a dark plate above or below a box, inside the picture and clear of other plates."""
+    # The font grows with the scale, but not beyond what suits the height of the picture.
     size = max(min(0.2 * scale, canvas.shape[0] / 1200.0), 0.4)
     (width, height), descent = cv2.getTextSize(text, _FONT, size, 1)
     line = height + descent + 3

@@ -1,10 +1,10 @@
-"""Colours that people with any colour vision tell apart, on grey images and on dark plots."""
+"""Colours that are distinct with any colour vision, on grey images and on dark plots."""
 
 from typing import Final
 
 Rgb = tuple[int, int, int]
 
-# Okabe and Ito, "Color Universal Design" (2008), without black and without blue, which drown on dark images.
+# Okabe and Ito, "Color Universal Design" (2008), without black and blue, invisible on dark images.
 _TRACKS: Final[tuple[Rgb, ...]] = (
     (230, 159, 0),
     (86, 180, 233),
@@ -13,7 +13,7 @@ _TRACKS: Final[tuple[Rgb, ...]] = (
     (213, 94, 0),
     (204, 121, 167),
 )
-# Paul Tol, "Colour Schemes" (2021), light: paler than the tracks', so that nobody takes one for the other.
+# Paul Tol, "Colour Schemes" (2021), light: paler than the colours of tracks, to avoid confusion.
 _PEOPLE: Final[tuple[Rgb, ...]] = (
     (153, 221, 255),
     (238, 221, 136),
@@ -24,22 +24,22 @@ _PEOPLE: Final[tuple[Rgb, ...]] = (
     (68, 187, 153),
 )
 
-TRACK_COLOURS: Final = len(_TRACKS)  # after which they repeat
+TRACK_COLOURS: Final = len(_TRACKS)  # the colours repeat after this many tracks
 TRUTH: Final[Rgb] = (150, 240, 130)
 ROBOT: Final[Rgb] = (214, 69, 65)
 
 
 def track_colour(number: int) -> Rgb:
-    """The colour of a track, by its id; they repeat after six."""
+    """Return the colour of a track by its id; colours repeat after six."""
     return _TRACKS[(number - 1) % TRACK_COLOURS]
 
 
 def person_colour(number: int) -> Rgb:
-    """The colour of a person, by id; they repeat after seven."""
+    """Return the colour of a person by id; colours repeat after seven."""
     return _PEOPLE[(number - 1) % len(_PEOPLE)]
 
 
 def faded(colour: Rgb, share: float) -> Rgb:
-    """Mix a colour with black: 1 leaves it, 0 is black."""
+    """Mix a colour with black: 1 returns the colour, 0 black."""
     red, green, blue = colour
     return round(red * share), round(green * share), round(blue * share)

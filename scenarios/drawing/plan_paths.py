@@ -1,4 +1,4 @@
-"""Draw on a plan who moves and how: the robot with its field of view, people, and things that are moved."""
+"""Draw movement on a plan: the robot with its field of view, people's paths, and objects that are moved."""
 
 import math
 from collections.abc import Iterator
@@ -30,7 +30,7 @@ _ARRIVED_M = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Way:
-    """Where a person undisturbed is: times (T,) [s], places (T, 2) [m]; and whether that one then leaves."""
+    """Path of an undisturbed person: times (T,) [s], positions (T, 2) [m], and whether it ends in leaving."""
 
     times: NDArray[np.float64]
     places: NDArray[np.float64]
@@ -38,19 +38,19 @@ class _Way:
 
     @property
     def walks(self) -> bool:
-        """Whether the person goes anywhere."""
+        """Whether the person walks."""
         return bool(np.ptp(self.places, axis=0).max() > _ARRIVED_M)
 
 
 def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, colour: str) -> None:
-    """Draw a person's way, the time along it, the pauses, and the name at the start."""
+    """Draw a person's path with times and pauses, and the name at its start."""
     way = _walk(person, end_s)
     axes.plot(way.places[:, 0], way.places[:, 1], color=colour, lw=1.6, alpha=0.9, zorder=7)
     _draw_arrows(axes, way, colour)
     start = way.places[0]
     axes.add_patch(Circle(start, 0.11, facecolor=colour, edgecolor="white", lw=1.0, zorder=8))
     labels.block(start[0], start[1], 0.12)
-    for x, y in np.unique(np.round(way.places, 1), axis=0):  # once where the person stands
+    for x, y in np.unique(np.round(way.places, 1), axis=0):  # once where the person stands still
         labels.block(x, y, 0.05)
     name = f"{person.name} {person.height_m:.2f} m{_presence(person, way)}"
     labels.write(start[0], start[1], name, size=8, color=colour, weight="bold")
@@ -59,7 +59,7 @@ def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, 
 
 
 def _presence(person: PersonConfig, way: _Way) -> str:
-    """Return when a person comes; of who walks, it stands at the end of the way when the person leaves."""
+    """Describe when a person arrives and leaves; a walker's departure is labelled at the path's end."""
     enters = f"from {person.enter_s:.1f}" if person.enter_s > 0.0 else ""
     leaves = f"until {person.leave_s:.1f}" if way.leaves and not way.walks else ""
     return f", {' '.join(filter(None, (enters, leaves)))} s" if enters or leaves else ""
@@ -78,7 +78,7 @@ def _walk(person: PersonConfig, end_s: float) -> _Way:
 
 
 def _draw_arrows(axes: Axes, way: _Way, colour: str) -> None:
-    """An arrow head every two metres walked, between the marks."""
+    """Draw an arrow head every two metres walked, between the time marks."""
     steps = np.linalg.norm(np.diff(way.places, axis=0), axis=1)
     walked = np.cumsum(steps)
     for distance in np.arange(1.0, walked[-1], 2.0):
@@ -100,7 +100,7 @@ def _draw_pauses(axes: Axes, labels: Labels, person: PersonConfig, way: _Way, co
             continue
         gaps = np.linalg.norm(way.places - np.array(waypoint.at_m), axis=1)
         if gaps.min() > 0.1:
-            continue  # the scenario ends before
+            continue  # the scenario ends before the pause
         axes.add_patch(Circle(waypoint.at_m, 0.16, facecolor="none", edgecolor=colour, lw=1.2, zorder=8))
         labels.block(*waypoint.at_m, 0.16)
         what = "" if waypoint.posture == "standing" else f" {waypoint.posture.replace('_', ' ')}"
@@ -110,7 +110,7 @@ def _draw_pauses(axes: Axes, labels: Labels, person: PersonConfig, way: _Way, co
 
 
 def _draw_times(axes: Axes, labels: Labels, way: _Way, colour: str) -> None:
-    """Dots at whole multiples of five seconds on the way, and what becomes of the person at its end."""
+    """Draw a dot every five seconds along the path, and label its end."""
     far = np.linalg.norm(way.places - way.places[-1], axis=1)
     on_the_way = np.flatnonzero(far > _ARRIVED_M)
     if len(on_the_way) == 0:
@@ -139,7 +139,7 @@ _CLEAR_M = 0.2  # between the middle of an outline and its label
 
 @dataclass(frozen=True, slots=True)
 class _Leg:
-    """A thing's way from one rest to the next; from None it appears, and to None it vanishes."""
+    """An object's path from one resting place to the next; from None it appears, to None it vanishes."""
 
     start: Stance | None
     end: Stance | None
@@ -148,7 +148,7 @@ class _Leg:
 
 
 def draw_moves(axes: Axes, labels: Labels, place: Place) -> None:
-    """Draw where moved things come to stand, the ways there, when they set off, and by whose hand."""
+    """Draw moved objects: their resting places, paths, start times, and the people who move them."""
     for mover in place.movers:
         own = [fixture for fixture in place.fixtures if fixture.name.split("/")[0] == mover.name]
         for leg in _legs(mover):
@@ -159,7 +159,7 @@ def draw_moves(axes: Axes, labels: Labels, place: Place) -> None:
 
 
 def _legs(mover: Mover) -> Iterator[_Leg]:
-    """The ways of a thing, from rest to rest."""
+    """Return the paths of an object between its resting places."""
     here: Stance | None = None if mover.is_hidden_at_start else mover.start
     setting_off: tuple[Stance | None, float, str | None] | None = None
     for index, action in enumerate(mover.actions):
@@ -212,7 +212,7 @@ _FAR_M = 100.0
 
 
 def draw_robot(axes: Axes, labels: Labels, scenario: Scenario, robot: RobotConfig) -> None:
-    """Draw the robot where it starts, and what its thermal camera sees from there, up to the walls."""
+    """Draw the robot at its start, and the field of view of its thermal camera up to the walls."""
     x, y = robot.at_m
     _draw_view(axes, labels, robot, scenario.place)
     track = _script_track(scenario, robot)
@@ -257,7 +257,7 @@ def _fill(axes: Axes, corners: NDArray[np.float64]) -> None:
 
 
 def _label_arc(labels: Labels, arc: NDArray[np.float64], text: str) -> None:
-    """Write its distance beside the end of an arc, if any of it is in the open."""
+    """Label the end of an arc with its distance, if any of the arc is visible."""
     seen = arc[np.isfinite(arc[:, 0])]
     if len(seen):
         x, y = seen[len(seen) // 12]
@@ -267,7 +267,7 @@ def _label_arc(labels: Labels, arc: NDArray[np.float64], text: str) -> None:
 def _distance_to_walls(
     eye: NDArray[np.float64], rays: NDArray[np.float64], place: Place
 ) -> NDArray[np.float64]:
-    """How far (R,) [m] each ray (R, 2) goes until it meets a wall (slab method)."""
+    """Return the distance (R,) [m] along each ray (R, 2) to the first wall (slab method)."""
     boxes = place.obstacles[[name.startswith("wall_") for name in place.obstacle_names]]
     way = np.where(np.abs(rays) < 1e-9, 1e-9, rays)[:, None, :]
     first, second = (boxes[None, :, :2] - eye) / way, (boxes[None, :, 2:] - eye) / way
@@ -278,7 +278,7 @@ def _distance_to_walls(
 
 
 def _script_track(scenario: Scenario, robot: RobotConfig) -> NDArray[np.float64]:
-    """Where a script would drive a robot that obeys at once: (T, 2) [m]."""
+    """Return the path (T, 2) [m] of a robot that follows a script without delay."""
     x, y, heading = *robot.at_m, robot.heading_rad
     track = [(x, y)]
     for step in range(round(scenario.duration_s / _STEP_S)):

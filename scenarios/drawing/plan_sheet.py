@@ -1,4 +1,4 @@
-"""Lay out the sheet of a plan, whole or in sections, place its labels, and draw the place on it."""
+"""Lay out the sheet of a plan, whole or in sections, place its labels, and draw the place."""
 
 import math
 from dataclasses import dataclass, field
@@ -19,8 +19,8 @@ from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
-_LETTER = 0.62  # width of a letter in font sizes
-_LINE = 1.25  # height of a line in font sizes
+_LETTER = 0.62  # width of a letter, in font sizes
+_LINE = 1.25  # height of a line, in font sizes
 _POINTS_PER_INCH = 72.0
 
 Box = tuple[float, float, float, float]  # min x, min y, max x, max y [m]
@@ -28,30 +28,30 @@ Box = tuple[float, float, float, float]  # min x, min y, max x, max y [m]
 
 @dataclass(slots=True)
 class Labels:
-    """Finds a free place for one word after another.
+    """Places labels, one after the other, where they cover least.
 
     Attributes:
-        axes: where to write; its limits and the figure's size must be final.
-        taken: boxes [m] that are written or drawn on.
+        axes: axes to write on; their limits and the figure's size must be final.
+        taken: boxes [m] that are occupied.
     """
 
     axes: Axes
     taken: list[Box] = field(default_factory=list)
 
     def block(self, x: float, y: float, radius_m: float) -> None:
-        """Keep words off a disc; one outside the axes keeps off nothing."""
+        """Keep labels off a disc; a disc outside the axes is ignored."""
         if not self._shows(x, y):
             return
         self.taken.append((x - radius_m, y - radius_m, x + radius_m, y + radius_m))
 
     def write(self, x: float, y: float, text: str, *, size: float = 7.0, **style: Any) -> None:
-        """Write a word beside a point, where it covers least of what is there."""
+        """Write a label beside a point, where it covers least."""
         self.write_at((x, y, x, y), text, size=size, **style)
 
     def write_at(self, box: Box, text: str, *, size: float = 7.0, **style: Any) -> None:
-        """Write a word in a box if it fits, else beside it, where it covers least of what is there.
+        """Write a label in a box if it fits, else beside it, where it covers least.
 
-        Of what lies outside the axes nothing is written.
+        Nothing is written for a box outside the axes.
         """
         if not self._shows(*_middle(box)):
             return
@@ -98,7 +98,7 @@ class Labels:
 
 
 def _inside(box: Box, extent: tuple[float, float]) -> list[Box]:
-    """Places in the middle, at the top and at the bottom of a box; none if it is too small."""
+    """Return places in the middle, at the top and at the bottom of a box; none if it is too small."""
     room = box[3] - box[1] - extent[1]
     if box[2] - box[0] < extent[0] or room < 0.0:
         return []
@@ -107,7 +107,7 @@ def _inside(box: Box, extent: tuple[float, float]) -> list[Box]:
 
 
 def _beside(box: Box, extent: tuple[float, float], gap: float, degrees: float) -> Box:
-    """A place in a direction from a box, clear of it by a gap."""
+    """Return a place at an angle from a box, with a gap between them."""
     x, y = _middle(box)
     u = x + math.cos(math.radians(degrees)) * (gap + (box[2] - box[0] + extent[0]) / 2.0)
     v = y + math.sin(math.radians(degrees)) * (gap + (box[3] - box[1] + extent[1]) / 2.0)
@@ -133,17 +133,17 @@ def _shared(a: Box, b: Box) -> float:
 
 PAPER, INK = "#fbfaf7", "#2b2d30"
 MARGIN_M = 0.4
-_LONGEST = 4.5  # times as long as wide: beyond that a place is cut into sections
-_SECTION = 3.0  # about that long is a section
-_OVERLAP_M = 0.5  # that two neighbouring sections both show
+_LONGEST = 4.5  # length over width; a longer place is drawn in sections
+_SECTION = 3.0  # approximate length over width of a section
+_OVERLAP_M = 0.5  # overlap of neighbouring sections
 _TALLEST_IN = 8.5
 _GAP_IN = 0.32
 
 
 def sections(bounds: Box) -> list[Box]:
-    """Cut a place's bounds (min x, min y, max x, max y [m]) into pieces of equal size, if it is a long strip.
+    """Split a place's bounds (min x, min y, max x, max y [m]) into equal sections, if it is a long strip.
 
-    Strips along x are cut; those along y are drawn tall as they are.
+    Only strips along x are split; strips along y are drawn as one tall plan.
     """
     low_x, low_y, high_x, high_y = bounds
     low_x, low_y, high_x, high_y = low_x - MARGIN_M, low_y - MARGIN_M, high_x + MARGIN_M, high_y + MARGIN_M
@@ -163,15 +163,15 @@ def lay_out(
     foot_in: float,
     side_in: tuple[float, float] = (0.05, 0.05),
 ) -> list[Axes]:
-    """Size a figure for some sections of a plan, one scale for all, and give their axes from top to bottom.
+    """Size a figure for the sections of a plan, at one scale, and return their axes from top to bottom.
 
     Args:
-        figure: to be drawn on.
-        pieces: the sections, of one size [m].
-        width_in: of the figure [inch].
-        head_in: room left above [inch].
-        foot_in: below.
-        side_in: on the left and on the right.
+        figure: the figure to draw on.
+        pieces: the sections, all of one size [m].
+        width_in: width of the figure [inch].
+        head_in: margin above [inch].
+        foot_in: margin below [inch].
+        side_in: margins on the left and on the right [inch].
     """
     low_x, low_y, high_x, high_y = pieces[0]
     inner = width_in - sum(side_in)
@@ -204,7 +204,7 @@ def _name_section(axes: Axes) -> None:
 
 
 def _scale_bar(axes: Axes) -> None:
-    """Two metres, below the plan."""
+    """Draw a scale bar of two metres below the plan."""
     left, low = axes.get_xlim()[0], axes.get_ylim()[0]
     x = left + MARGIN_M
     axes.plot([x, x + 2.0], [low, low], color=INK, lw=2.0, solid_capstyle="butt", clip_on=False)
@@ -220,7 +220,7 @@ _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
 
 
 def footprints(fixture: Fixture) -> list[Outline]:
-    """Outline every shape of a fixture from above; furniture from a file by the box around it."""
+    """Return the outline of every shape of a fixture from above; furniture from a file has a bounding box."""
     if fixture.part is None:
         low, high = fixture_extent(fixture)[:, :2]
         return [np.array([low, [high[0], low[1]], high, [low[0], high[1]]])]
@@ -229,7 +229,7 @@ def footprints(fixture: Fixture) -> list[Outline]:
 
 
 def _surface_points(shape: Shape) -> NDArray[np.float64]:
-    """Points (N, 3) of a shape's surface in its part's frame, whose hull is the shape or nearly so."""
+    """Return points (N, 3) in the part's frame whose convex hull approximates a shape."""
     low, high = shape_extent(shape)
     points = low + _CORNERS * (high - low)
     if shape.kind in (ShapeKind.CYLINDER, ShapeKind.SPHERE, ShapeKind.CAPSULE):
@@ -260,12 +260,12 @@ WARMTH = LinearSegmentedColormap.from_list(
 )
 SPAN_C = Normalize(vmin=14.0, vmax=64.0)
 _FLOOR, _LOBBY, _WALL, _EDGE, _LEAF = "#f2efe7", "#e6e1d5", "#4a4d52", "#5b5e63", "#9a6a3f"
-_ROOM_C = (18.0, 25.0)  # nothing worth a figure
+_ROOM_C = (18.0, 25.0)  # temperatures that are not labelled
 _OVERHEAD_M = 2.0
 
 
 def draw_floor(axes: Axes, plan: FloorPlan) -> None:
-    """Draw the floor, lobbies darker."""
+    """Draw the floor, with lobbies in a darker colour."""
     for index, area in enumerate(plan.walkable()):
         corner, width, height = (area.min_x, area.min_y), area.max_x - area.min_x, area.max_y - area.min_y
         colour = _FLOOR if index < len(plan.areas) else _LOBBY
@@ -273,7 +273,7 @@ def draw_floor(axes: Axes, plan: FloorPlan) -> None:
 
 
 def draw_walls(axes: Axes, labels: Labels, place: Place) -> None:
-    """Draw walls; the lintel of an open door is a dashed line across the gap, a closed door its leaf."""
+    """Draw walls and closed doors; the lintel of an open door is a dashed line across the gap."""
     for fixture in place.fixtures:
         name = fixture.name
         if name.startswith("wall_") or name.endswith("/leaf"):
@@ -289,7 +289,7 @@ def draw_walls(axes: Axes, labels: Labels, place: Place) -> None:
 
 
 def draw_things(axes: Axes, labels: Labels, place: Place) -> None:
-    """Draw things from above; what hangs overhead is only an outline, over which one may write."""
+    """Draw objects from above; overhead objects as outlines that labels may cover."""
     things = [fixture for fixtures in _things(place).values() for fixture in fixtures]
     labels.taken += [_box(fixtures) for fixtures in _things(place).values() if not _is_overhead(fixtures)]
     for fixture in sorted(things, key=lambda f: float(fixture_extent(f)[1, 2])):
@@ -309,19 +309,19 @@ def draw_things(axes: Axes, labels: Labels, place: Place) -> None:
 
 
 def name_things(labels: Labels, place: Place) -> None:
-    """Name every thing, with its temperature if it is not the room's; the smallest first."""
+    """Label every object, with its temperature if it differs from the room's; the smallest first."""
     things = {name: fixtures for name, fixtures in _things(place).items() if not _is_overhead(fixtures)}
     for name, fixtures in sorted(things.items(), key=lambda item: _area_m2(_box(item[1]))):
         warmest = max((_temperature(fixture) for fixture in fixtures), key=lambda c: abs(c - 21.0))
         number = "" if _ROOM_C[0] <= warmest <= _ROOM_C[1] else f"\n{warmest:g} °C"
         box = _box(fixtures)
-        labels.taken.remove(box)  # a word may stand on its own thing
+        labels.taken.remove(box)  # a label may cover its own object
         labels.write_at(box, f"{name.replace('_', ' ')}{number}", size=6.2, color="#55585c")
         labels.taken.append(box)
 
 
 def _things(place: Place) -> dict[str, list[Fixture]]:
-    """Fixtures that are not the shell and are there at first, by the name of their thing."""
+    """Return fixtures by object name, without floor, ceiling, walls, doors and objects hidden at start."""
     things: dict[str, list[Fixture]] = {}
     absent = {mover.name for mover in place.movers if mover.is_hidden_at_start}
     for fixture in place.fixtures:

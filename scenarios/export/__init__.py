@@ -1,1 +1,1 @@
-"""Runs in the formats of others: their tables, and their images rendered again, as those tools read them."""
+"""Export runs to the file formats of other tools: tables, and images that are rendered again."""

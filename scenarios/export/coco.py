@@ -1,15 +1,15 @@
-"""COCO: images, masks, boxes and keypoints of everybody who can be seen, and the truth of each image.
+"""COCO: images, masks, boxes and keypoints of all visible people, and the ground truth of each image.
 
     annotations/person_keypoints.json                  of the thermal images
-    annotations/CAMERA/person_keypoints.json           of those of any other camera, such as colour
+    annotations/CAMERA/person_keypoints.json           of the images of any other camera, such as colour
     images/RUN/thermal/000001.png, thermal16/..., colour/...
 
-and of runs of a rendered set, which has splits:
+and for runs of a rendered set, which has splits:
 
     annotations/person_keypoints_train.json, ..._val.json, ..._test.json
     images/train/RUN/thermal/000001.png, ...
 
-File names in an annotation file begin behind `images`, or behind `images/train`.
+File names in an annotation file are relative to `images`, or to `images/train`.
 
 COCO counts pixels from the image's corner: the middle of the top-left pixel is (0.5, 0.5) there, and (0, 0)
 in a run's folder. Fields beyond COCO's own are explained in docs/truth.md.
@@ -49,7 +49,7 @@ from peopleboy.sim.truth.truth import PersonTruth
 
 _PERSON = 1
 _LICENCE: Final = {"id": 1, "name": "MIT", "url": "https://opensource.org/license/mit"}  # the project's
-# Pairs of keypoints, counted from 1, as in COCO.
+# Pairs of keypoint numbers, from 1, as in COCO.
 _SKELETON = (
     (16, 14), (14, 12), (17, 15), (15, 13), (12, 13), (6, 12), (7, 13), (6, 7), (6, 8), (7, 9), (8, 10),
     (9, 11), (2, 3), (1, 2), (1, 3), (2, 4), (3, 5), (4, 6), (5, 7),
@@ -57,10 +57,10 @@ _SKELETON = (
 
 
 def write_coco(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
-    """Write runs as one set, or each split of theirs as one; each run is a video.
+    """Write runs as one set, or as one set per split; each run is a video.
 
     Raises:
-        BadInput: the runs cannot be sorted by split.
+        BadInput: some runs have splits and others do not.
     """
     for split, own in by_split(runs).items():
         for camera, content in _write_set(own, folder / "images" / (split or ""), play).items():
@@ -70,13 +70,13 @@ def write_coco(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
 
 
 def annotations_file(split: str | None = None, camera: str = "thermal") -> Path:
-    """Where the annotations of a split lie, or those of runs without splits."""
+    """Return the path of the annotations of a split, or of runs without splits."""
     folder = Path("annotations") / ("" if camera == "thermal" else camera)
     return folder / f"person_keypoints{'' if split is None else f'_{split}'}.json"
 
 
 def _write_set(runs: Sequence[FinishedRun], folder: Path, play: Play) -> dict[str, dict[str, Any]]:
-    """Write the images of runs, and give what is to be said of each camera's."""
+    """Write the images of runs, and return the annotations of each camera."""
     cameras = {name: _Annotations() for run in runs for name in with_boxes(run.robot.cameras)}
     for video, run in enumerate(runs, start=1):
         make_image_folders(folder / run.name, run.robot.cameras)
@@ -88,7 +88,7 @@ def _write_set(runs: Sequence[FinishedRun], folder: Path, play: Play) -> dict[st
 
 
 class _Annotations:
-    """Images of one camera, and who can be seen in them."""
+    """Images of one camera, and the people visible in them."""
 
     def __init__(self) -> None:
         self.images: list[dict[str, Any]] = []
@@ -118,10 +118,10 @@ def _content(runs: Sequence[FinishedRun], camera: str, own: _Annotations) -> dic
 
 
 def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, Any]:
-    """Describe a person of whom at least one pixel is visible.
+    """Return the annotation of a person with at least one visible pixel.
 
     Args:
-        person: who.
+        person: ground truth of the person.
         instance: (H, W) id of the person seen at each pixel.
     """
     mask = instance == person.id
@@ -143,12 +143,12 @@ def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, An
 
 
 def _encoded(mask: NDArray[np.bool_]) -> dict[str, Any]:
-    """Encode a mask (H, W) by the lengths of its runs, column by column, as text.
+    """Encode a mask (H, W) as COCO's compressed run-length text, column by column.
 
-    Runs of 0 and 1 alternate, 0 first. From the fourth run on, the difference to the last but one is written,
-    in groups of 5 bits, the lowest first; bit 5 says whether more follow.
+    Runs of 0 and 1 alternate, 0 first. From the fourth run on, the difference to the run before the previous
+    one is written, in groups of 5 bits, the lowest first; bit 5 is set if more groups follow.
 
-    Source: `rleToString` in maskApi.c of pycocotools, whose text this is.
+    Source: `rleToString` in maskApi.c of pycocotools, which gives the same text.
     """
     column = np.pad(mask.ravel(order="F"), (1, 1), constant_values=(False, not mask[-1, -1]))
     ends = np.flatnonzero(column[1:] != column[:-1])
@@ -198,7 +198,7 @@ def _image(run: FinishedRun, camera: str, tick: Tick) -> dict[str, Any]:
 
 
 def _files_beside(run: FinishedRun, camera: str, tick: Tick) -> dict[str, str]:
-    """Name the other files of the same instant, by folder."""
+    """Return the names of the other files of the same instant, by folder."""
     return {
         f"{folder}_file_name": _file_name(run, folder, tick)
         for folder, image, _ in image_folders(run.robot.cameras)
@@ -211,7 +211,7 @@ def _file_name(run: FinishedRun, folder: str, tick: Tick) -> str:
 
 
 def _video(number: int, run: FinishedRun, camera: str) -> dict[str, Any]:
-    """Describe a run as the images of one camera show it."""
+    """Return the video entry of a run for the images of one camera."""
     config = run.robot.cameras[camera]
     return {
         "id": number,
@@ -226,9 +226,10 @@ def _video(number: int, run: FinishedRun, camera: str) -> dict[str, Any]:
 
 
 def _camera(camera: CameraGeometry) -> dict[str, Any]:
-    """Return size, what pixels see, and where a camera sits.
+    """Return image size, intrinsics and pose of a camera.
 
-    Pixels of a pinhole's matrix are counted from the corner. A panorama has what `PanoramaCalibration` wants.
+    The matrix of a pinhole camera counts pixels from the corner. A panorama has the parameters of
+    `PanoramaCalibration`.
     """
     about: dict[str, Any] = {"width": camera.width, "height": camera.height}
     if isinstance(camera, Pinhole):

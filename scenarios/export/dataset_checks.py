@@ -1,4 +1,4 @@
-"""Whether a rendered set is what its datasheet says."""
+"""Check a rendered set against its datasheet."""
 
 import hashlib
 import json
@@ -24,19 +24,19 @@ from peopleboy.sim.cameras.kinds import image_folders
 _ROUNDING = 1e-9
 _AGAIN_FRAMES = 3
 _CORNER_PX = -0.5  # of the first pixel
-_HALF_PX = 0.5  # a pixel counts by its middle, and reaches so far beyond it
+_HALF_PX = 0.5  # boxes extend half a pixel beyond the centres of their pixels
 
 
-_Look = dict[str, tuple[tuple[int, ...] | None, bool]]  # by file: its shape, and whether it has one value
+_Look = dict[str, tuple[tuple[int, ...] | None, bool]]  # by file: shape, and whether all pixels are equal
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One thing that was looked at.
+    """One check of a rendered set.
 
     Attributes:
-        what: should hold.
-        failures: where it does not, one line each; empty if it holds.
+        what: the condition that should hold.
+        failures: violations, one line each; empty if the condition holds.
     """
 
     what: str
@@ -44,15 +44,15 @@ class Check:
 
 
 def check_set(folder: Path, runs: Sequence[Path], first: Scenario, options: RunOptions) -> list[Check]:
-    """Look at everything that can be looked at; at images where there are some.
+    """Run all checks; those of images only if the set has images.
 
     Args:
-        folder: of the set, with its splits.
-        runs: the runs' folders.
+        folder: folder of the set, with its splits.
+        runs: folders of the runs.
         first: scenario of the first run, which is rendered again.
-        options: how that was run.
+        options: options of that run.
     """
-    of_images = "every image is there and has its size, and none shows a plain surface"
+    of_images = "every image exists with the right size, and none is uniform"
     images = [_each(of_images, runs, _check_images)] if options.frames else []
     return [
         *images,
@@ -60,10 +60,10 @@ def check_set(folder: Path, runs: Sequence[Path], first: Scenario, options: RunO
         _each(
             "visible boxes lie inside whole boxes, to half a pixel, and inside the image", runs, _check_boxes
         ),
-        Check("no two runs have the same truth", tuple(_twins(runs))),
-        Check("every run is in one split, and in one only", tuple(_check_splits(folder, runs))),
+        Check("no two runs have the same ground truth", tuple(_twins(runs))),
+        Check("every run is in exactly one split", tuple(_check_splits(folder, runs))),
         Check(
-            f"the first run, started again, gives the same {'images, ' * options.frames}boxes and tracks",
+            f"the first run, repeated, gives the same {'images, ' * options.frames}boxes and tracks",
             tuple(_check_again(runs[0], first, options)),
         ),
     ]
@@ -81,14 +81,14 @@ def _check_images(run: Path) -> list[str]:
         frames = range(1, about["frames"] + 1, every)
         views = [_look_into(run / folder) for folder, _, _ in image_folders({name: camera})]
         wrong += [f"{name}: {fault}" for look in views for fault in _faults(look, frames)]
-        # What is cold is black in 8 bits, whose other images still have content.
+        # A cold scene can be black in the 8-bit image, while the other images still have content.
         plain = set.intersection(*(_plain(look) for look in views))
         wrong += [f"{name}: {file} has no content" for file in sorted(plain)]
     return wrong
 
 
 def _look_into(folder: Path) -> _Look:
-    """Return the shape of each image in a folder, None if it is unreadable, and whether it has one value."""
+    """Return for each image in a folder its shape, None if unreadable, and whether all pixels are equal."""
     return {path.name: _look_at(path) for path in sorted(folder.glob("*.png"))}
 
 
@@ -102,7 +102,7 @@ def _plain(look: _Look) -> set[str]:
 
 
 def _faults(look: _Look, frames: Sequence[int]) -> Iterator[str]:
-    """Describe what is wrong with a folder that should have the images of these frames."""
+    """Yield the faults of a folder that should have the images of these frames."""
     if list(look) != [image_file(frame) for frame in frames]:
         yield f"{len(look)} images for {len(frames)} frames"
     shapes = {shape for shape, _ in look.values()}
@@ -154,7 +154,7 @@ def _check_splits(folder: Path, runs: Sequence[Path]) -> list[str]:
 
 
 def _check_again(done: Path, scenario: Scenario, options: RunOptions) -> list[str]:
-    """Start the run again, until all are there, and compare every image and every line of text."""
+    """Repeat the run, and compare every image and every line of text."""
     rate_hz = json.loads((done / "run.json").read_text())["rate_hz"]
     entries_s = [person.enter_s for person in scenario.people(options.seed)]
     short = scenario.lasting(

@@ -1,4 +1,4 @@
-"""Measure a rendered set, and write its README under the questions of a datasheet.
+"""Measure a rendered set, and write its README, structured by the questions of a datasheet.
 
 The questions are those of Gebru et al., "Datasheets for Datasets", 2021.
 """
@@ -30,12 +30,12 @@ from peopleboy.sim.cameras.kinds import KINDS, image_folders, kind_of
 VISIBLE_EDGES = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 DISTANCE_EDGES_M = (0.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, np.inf)
 _AS_STORED = cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH
-_EVERY = 15  # of so many images one goes into the means
+_EVERY = 15  # every how many images one is used for the means
 
 
 @dataclass(frozen=True, slots=True)
 class Bin:
-    """One bar of a histogram: how many boxes lie from one edge to the next."""
+    """One bar of a histogram: the number of boxes between two edges."""
 
     start: float
     end: float
@@ -44,16 +44,16 @@ class Bin:
 
 @dataclass(frozen=True, slots=True)
 class Statistics:
-    """What a set, or a split of it, holds.
+    """Statistics of a set, or of a split.
 
     Attributes:
-        runs: how many.
-        content: counted as for the thesis's table 3.1 (`peopleboy.scenarios.scores.suite_table.Content`).
+        runs: number of runs.
+        content: counts as in the thesis's table 3.1 (`peopleboy.scenarios.scores.suite_table.Content`).
         visible: people whose silhouette reaches into the image, by visible fraction.
-        distance: the same, by distance from the camera [m].
-        height_px: 5, 25, 50, 75 and 95 percent of their boxes are no higher [px].
-        hidden_mostly_by: boxes of which more is hidden by this kind of thing than by any other: person,
-            thing, border; and those of which nothing is.
+        distance: the same people, by distance from the camera [m].
+        height_px: 5, 25, 50, 75 and 95 % percentiles of the heights of their boxes [px].
+        hidden_mostly_by: number of boxes by their main occluder: person, thing, border; and of boxes of which
+            nothing is hidden.
         image_mean, image_sd: by channel [grey], of depth [mm], of every 15th image; empty without images.
     """
 
@@ -67,7 +67,7 @@ class Statistics:
     image_sd: dict[str, list[float]]
 
     def to_json(self) -> dict[str, Any]:
-        """As JSON can hold it: the last bin of distances has no end."""
+        """Return the statistics for JSON; the last bin of distances has no end."""
         data = asdict(self)
         for each in (*data["visible"], *data["distance"]):
             each["end"] = None if np.isinf(each["end"]) else each["end"]
@@ -135,7 +135,7 @@ def _image_statistics(runs: Sequence[Path]) -> tuple[dict[str, list[float]], dic
 
 
 def _moments(image: NDArray[Any]) -> NDArray[np.float64]:
-    """(2, channels) mean and mean square, channels in the order red, green, blue."""
+    """Return mean and mean square (2, channels), channels in the order red, green, blue."""
     flat = np.float64(image.reshape(-1, image.shape[2])[:, ::-1])
     return np.array([flat.mean(axis=0), (flat**2).mean(axis=0)])
 
@@ -154,11 +154,11 @@ def write_datasheet(
 
     Args:
         path: the file.
-        statistics: of all, and of each split that has runs.
-        checks: what was looked at.
-        about: words of the command that ask for it, images, tracker, versions, size_mb, which splits are
-            lacking, and of random worlds histograms of what was drawn.
-        scenarios: what was played.
+        statistics: statistics of all runs, and of each split that has runs.
+        checks: results of the checks.
+        about: arguments of the command, images, tracker, versions, size_mb, empty splits, and for random
+            worlds histograms of the sampled values.
+        scenarios: the scenarios of the runs.
     """
     environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters |= {"span": _span, "quote": shlex.quote}
@@ -180,7 +180,7 @@ def write_datasheet(
 
 
 def _folders(outfits: Iterable[Mapping[str, CameraConfig]]) -> dict[str, str]:
-    """Say what is in each folder of images, which may be one thing in one scenario and another in another."""
+    """Describe the content of each folder of images, which may differ between scenarios."""
     found: dict[str, dict[str, None]] = {}
     for folder, _, layer in (images for outfit in outfits for images in image_folders(outfit)):
         found.setdefault(folder, {})[layer.what] = None
@@ -188,7 +188,7 @@ def _folders(outfits: Iterable[Mapping[str, CameraConfig]]) -> dict[str, str]:
 
 
 def _units(outfits: Iterable[Mapping[str, CameraConfig]]) -> dict[str, str]:
-    """Name the unit of each camera's images; one that a tracker had mounted has the name of its kind."""
+    """Return the unit of each camera's images; a camera mounted for a tracker has the name of its kind."""
     usual = {name: kind.unit for name, kind in KINDS.items()}
     return usual | {name: kind_of(config).unit for outfit in outfits for name, config in outfit.items()}
 

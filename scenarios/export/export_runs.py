@@ -1,4 +1,4 @@
-"""Export runs in one of the formats, whole or not at all."""
+"""Export runs in one of the formats, completely or not at all."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from peopleboy.tracker.footage.box_kinds import BoxKind
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportOptions:
-    """How runs are exported.
+    """Options of an export.
 
     Attributes:
         form: name of the format, one of `FORMATS`.
@@ -67,29 +67,29 @@ class ExportOptions:
 
 
 def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> None:
-    """Write runs in one of the formats, whole or not at all.
+    """Write runs in one of the formats, completely or not at all.
 
     Args:
-        runs: which.
-        options: the format, and what it takes.
-        play: gives a run's ticks, as `replay` does.
+        runs: the runs to write.
+        options: the format and its options.
+        play: returns the ticks of a run, as `replay` does.
 
     Raises:
-        BadInput: the runs cannot be written so, or there.
+        BadInput: the runs cannot be written in this format, or to this folder.
     """
     form, camera, least_px, boxes = options.form, options.camera, options.least_px, options.boxes
     if camera is not None and not takes(form, "camera"):
-        raise BadInput(f"--camera {camera}: {form} has the images of every camera; leave it out")
+        raise BadInput(f"--camera {camera}: {form} contains the images of every camera; omit the option")
     if least_px is not None and not takes(form, "least_px"):
         raise BadInput(
             f"--least-px {least_px:g}: {form} contains everyone with a visible pixel; omit this option"
         )
     if boxes is not None and not takes(form, "boxes"):
         having = [name for name in FORMATS if takes(name, "boxes")]
-        raise BadInput(f"--boxes {boxes}: only {', '.join(having)} has boxes of either; leave it out")
+        raise BadInput(f"--boxes {boxes}: only {', '.join(having)} has a choice of boxes; omit the option")
     for option, value in (("epoch", options.epoch), ("ros_distro", options.ros_distro)):
         if value is not None and not takes(form, option):
-            raise BadInput(f"--{option.replace('_', '-')} {value}: is for mcap; leave it out")
+            raise BadInput(f"--{option.replace('_', '-')} {value}: applies to mcap only; omit the option")
     about: dict[str, Any] = {"format": form, "runs": [run.name for run in runs], "versions": versions()}
     splits = {split: [run.name for run in own] for split, own in by_split(runs).items() if split}
     about |= {"splits": splits} if splits else {}
@@ -116,6 +116,6 @@ def notes_on(runs: Sequence[FinishedRun], options: ExportOptions) -> Iterator[st
     for tracker, kind in kinds.items():
         if kind is not there:
             yield (
-                f"boxes of tracker {tracker} are round {CALLED[kind]}, those of gt.txt round {CALLED[there]};"
-                f" --boxes {kind} has those of gt.txt round {CALLED[kind]}, too"
+                f"boxes of tracker {tracker} enclose {CALLED[kind]}, those of gt.txt {CALLED[there]};"
+                f" with --boxes {kind}, those of gt.txt enclose {CALLED[kind]} too"
             )

@@ -1,7 +1,7 @@
-"""The table of export formats: one entry a format, loaded when it is asked for.
+"""The table of export formats: one entry per format, imported on first use.
 
-Other packages add formats by entry points of the group `peopleboy.exports`: each names a function as those of
-this table, `write(runs, folder, play)`, and is offered under the entry point's name.
+Other packages add formats by entry points of the group `peopleboy.exports`. Each names a function with the
+signature of this table, `write(runs, folder, play)`; the format has the entry point's name.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ FORMATS: Final = Registry(
         "coco": Entry(f"{_HERE}.coco:write_coco", "masks, boxes, keypoints"),
         "images": Entry(
             f"{_HERE}.replay:write_label_images",
-            "beside every image, who is at each pixel, which part of the body, and true depth",
+            "images with person, body part and true depth of each pixel",
         ),
         "yolo": Entry(f"{_HERE}.yolo:write_yolo", "boxes, for Ultralytics"),
         "yolo-pose": Entry(f"{_HERE}.yolo:write_yolo_pose", "boxes and keypoints, for Ultralytics"),
@@ -33,7 +33,7 @@ FORMATS: Final = Registry(
         "mp4": Entry(f"{_HERE}.video:write_mp4", "films"),
     },
 )
-"""The formats by name; each is called with `(runs, folder, play)`; further parameters are its options."""
+"""The formats by name; each is called with `(runs, folder, play)`, and further parameters are options."""
 
 
 def takes(name: str, option: str) -> bool:
@@ -42,10 +42,10 @@ def takes(name: str, option: str) -> bool:
 
 
 def need(package: str, option: str) -> Any:
-    """Import a package of the extra `export`, which an option of the command line wants.
+    """Import a package of the extra `export` that a command-line option needs.
 
     Raises:
-        BadInput: it is not installed.
+        BadInput: the package is not installed.
     """
     try:
         return import_module(package)

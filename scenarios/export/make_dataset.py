@@ -1,4 +1,4 @@
-"""Render a data set: choose its runs, play them, then write splits, statistics, checks and the datasheet."""
+"""Render a data set: choose its runs, run them, then write splits, statistics, checks and the datasheet."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -34,7 +34,7 @@ from peopleboy.sim.physics.physics_engine import check_physics
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Member:
-    """A run of a set: what is played, with which seed, and the name of its folder."""
+    """A run of a set: its scenario, its seed, and the name of its folder."""
 
     scenario: Scenario
     seed: int
@@ -43,14 +43,14 @@ class Member:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SetContents:
-    """What a set is to hold.
+    """Planned contents of a set.
 
     Attributes:
         members: its runs, in order.
-        asked: words of the command that ask for them.
-        about: the same for `dataset.json`.
-        lacking: which splits have no run, and what to ask for; empty if all have one.
-        is_random: whether they are worlds drawn at random.
+        asked: arguments of the command that requests them.
+        about: the request as written to `dataset.json`.
+        lacking: the splits without a run, and the number of seeds needed; empty if all have one.
+        is_random: whether the runs are random worlds.
     """
 
     members: tuple[Member, ...]
@@ -61,10 +61,10 @@ class SetContents:
 
 
 def of_scenarios(scenarios: Sequence[str], seeds: range) -> SetContents:
-    """Return the contents of a set of scenarios, by name or path, each with all seeds.
+    """Return the contents of a set of scenarios, given by name or path, each with all seeds.
 
     Raises:
-        BadInput: a scenario cannot be played, or two have one name.
+        BadInput: a scenario cannot be loaded, or two have the same name.
     """
     loaded = [load_scenario(scenario) for scenario in scenarios]
     names = [scenario.name for scenario in loaded]
@@ -97,7 +97,7 @@ def _about(seeds: range) -> dict[str, int]:
 
 
 DRAWN: Final = "drawn.json"
-"""The file with the values that were drawn for each random world of a set."""
+"""File with the sampled values of each random world of a set."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,7 +105,7 @@ class SetOptions:
     """Contents of a set, scenarios with many seeds or random worlds, and how it is rendered.
 
     Attributes:
-        seeds: of the runs of each scenario, or of the random worlds.
+        seeds: seeds of the runs of each scenario, or of the random worlds.
     """
 
     scenarios: tuple[str, ...] = ()
@@ -123,13 +123,13 @@ class SetOptions:
     tracker: Annotated[str, Field(description="Tracker of robots that follow people.")] = "truth"
 
     def contents(self) -> tuple[SetContents, str]:
-        """Choose the runs, and return them with the usual name of the set.
+        """Return the runs, and the default name of the set.
 
         Raises:
-            BadInput: options contradict each other, or a scenario cannot be played.
+            BadInput: options contradict each other, or a scenario cannot be loaded.
         """
         if bool(self.scenarios) is self.random_worlds:
-            raise BadInput("render: give scenarios, or --random-worlds, but not both")
+            raise BadInput("render: give either scenarios or --random-worlds")
         if self.random_worlds:
             return of_worlds(self.seeds), "worlds"
         contents = of_scenarios(self.scenarios, self.seeds)
@@ -141,12 +141,12 @@ class RenderedSet:
     """A finished set.
 
     Attributes:
-        folder: where it lies.
+        folder: folder of the set.
         runs: folders of its runs, in the order of the contents.
-        statistics: of each split that has runs, and of "all".
-        checks: what was looked at.
-        size_mb: [MB] of the runs on disk; exports may lie beside them.
-        lacking: which splits have no run, and what to ask for; empty if all have one.
+        statistics: statistics of each split that has runs, and of "all".
+        checks: results of the checks.
+        size_mb: [MB] of the runs on disk, without exports in the same folder.
+        lacking: the splits without a run, and the number of seeds needed; empty if all have one.
     """
 
     folder: Path
@@ -157,7 +157,7 @@ class RenderedSet:
     lacking: str
 
     def to_json(self) -> dict[str, Any]:
-        """Return what there is to say about the set as JSON can hold it."""
+        """Return the summary of the set for JSON."""
         return {
             "folder": str(self.folder),
             "runs": [run.name for run in self.runs],
@@ -176,19 +176,19 @@ class RenderedSet:
 def render_set(
     contents: SetContents, folder: Path, *, frames: bool, tracker: str, workers: Workers
 ) -> RenderedSet:
-    """Render a set, or what is missing of it; complete runs stay.
+    """Render a set; complete runs that exist already are kept.
 
-    The datasheet and `dataset.json` are written last: without them a set is not finished.
+    The datasheet and `dataset.json` are written last: a set without them is unfinished.
 
     Args:
-        contents: what it holds.
-        folder: of the set.
+        contents: contents of the set.
+        folder: folder of the set.
         frames: whether images are written.
-        tracker: whose eyes steer robots that follow people; "truth" for the true boxes.
-        workers: who does the runs.
+        tracker: tracker of robots that follow people; "truth" for the ground truth boxes.
+        workers: workers that execute the runs.
 
     Raises:
-        BadInput: as for a run; or the folder holds something that is no set.
+        BadInput: as for a run; or the folder contains something other than a set.
         TasksFailed: some runs failed.
     """
     members = contents.members
@@ -235,10 +235,10 @@ def render_set(
 
 
 def _claim(folder: Path) -> None:
-    """Make the folder.
+    """Create the folder.
 
     Raises:
-        BadInput: something else lies there.
+        BadInput: the folder contains something other than a set.
     """
     check_named(folder)
     if folder.exists() and (not folder.is_dir() or (any(folder.iterdir()) and not is_set(folder))):
@@ -248,7 +248,7 @@ def _claim(folder: Path) -> None:
 
 
 def _reopen(folder: Path) -> None:
-    """Take back what says that the set is finished."""
+    """Remove the files that mark the set as finished."""
     for name in ("README.md", ABOUT, DRAWN):
         (folder / name).unlink(missing_ok=True)
 

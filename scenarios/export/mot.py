@@ -1,4 +1,4 @@
-"""MOTChallenge: folders as TrackEval and everybody's trackers read them.
+"""MOTChallenge: the folder structure of TrackEval and common trackers.
 
 gt/mot_challenge/seqmaps/peopleboy-all.txt               names of the sequences
 gt/mot_challenge/peopleboy-all/SEQUENCE/seqinfo.ini      length, frame rate, size
@@ -6,15 +6,15 @@ gt/mot_challenge/peopleboy-all/SEQUENCE/seqinfo.ini      length, frame rate, siz
 /img1/000001.png  images of the camera
 trackers/mot_challenge/peopleboy-all/TRACKER/data/SEQUENCE.txt
 
-gt.txt has boxes round torsos, as the run's own, or round whole people, as if nothing hid them.
+The boxes of gt.txt enclose torsos, as in the run itself, or whole people, including hidden parts.
 
-The camera is the thermal one unless another is asked for, whose images are counted from 1 too; results are
-there if the tracker gave boxes in its images.
+The default camera is the thermal one. Images of any camera are numbered from 1. Results are written if the
+tracker has boxes in its images.
 
 Runs of a rendered set are written by split: instead of peopleboy-all there are peopleboy-train, peopleboy-val
 and peopleboy-test.
 
-There is no det/det.txt: nothing in a run finds people in single images, and truth is no detection.
+There is no det/det.txt: a run has no detections of single images, and ground truth is no detection.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -31,7 +31,7 @@ from peopleboy.tracker.footage.box_kinds import BoxKind
 
 BENCHMARK, EVERYTHING = "peopleboy", "all"
 
-# Class 8 of MOTChallenge, a distractor: neither missed nor, if a tracker finds it, a false alarm.
+# Class 8 of MOTChallenge, a distractor: neither a miss nor, if tracked, a false positive.
 _DISTRACTOR = 8
 _COUNTED, _CLASS, _VISIBLE = 6, 7, 8
 
@@ -48,15 +48,15 @@ def write_mot(
     """Write runs as sequences, by split; runs of several trackers on the same seed are one sequence.
 
     Args:
-        runs: which.
-        folder: to leave.
-        play: gives a run's ticks.
-        camera: whose images and boxes.
-        boxes: what those of the truth are drawn round.
+        runs: the runs to write.
+        folder: output folder.
+        play: returns the ticks of a run.
+        camera: camera of the images and boxes.
+        boxes: what the ground truth boxes enclose.
 
     Raises:
-        BadInput: two runs are the same, or the trackers have not seen the same sequences, or the runs cannot
-            be sorted by split, or one has no such camera.
+        BadInput: two runs are the same, the trackers have run on different sequences, only some runs have
+            splits, or one has no such camera.
     """
     sorted_runs = {
         split: _sequences([with_people(run, camera) for run in own]) for split, own in by_split(runs).items()
@@ -95,7 +95,7 @@ def gt_text(shots: OneCamera, boxes: BoxKind = BoxKind.TORSO) -> str:
 
 
 def _truth_lines(shots: OneCamera, boxes: BoxKind) -> list[str]:
-    """Return a line for each person in each frame of the run, as its truth/gt.txt has them."""
+    """Return one line for each person in each frame of the run, in the format of truth/gt.txt."""
     text, table = truth_files(shots.run.folder, shots.name)
     if boxes is BoxKind.TORSO:
         return text.read_text(encoding="utf-8").splitlines()
@@ -105,7 +105,7 @@ def _truth_lines(shots: OneCamera, boxes: BoxKind) -> list[str]:
 
 
 def _numbered(shots: OneCamera, lines: Iterable[str]) -> Iterator[list[str]]:
-    """Yield the cells of each line, the frames of the run replaced by the camera's images."""
+    """Yield the cells of each line, with frames of the run replaced by image numbers of the camera."""
     for line in lines:
         frame, *rest = line.split(",")
         if int(frame) in shots.frames:
@@ -113,18 +113,18 @@ def _numbered(shots: OneCamera, lines: Iterable[str]) -> Iterator[list[str]]:
 
 
 def _sequences(every: Sequence[OneCamera]) -> _Sequences:
-    """Sort runs by sequence and tracker."""
+    """Group runs by sequence and tracker."""
     found: _Sequences = {}
     for shots in every:
         run, tracker = shots.run, shots.run.about.tracker
         own = found.setdefault(f"{run.scenario.name}-{run.about.seed}", {})
         if tracker in own:
             raise BadInput(
-                f"{run.folder}: same scenario, seed and tracker as {own[tracker].run.folder}; leave one out"
+                f"{run.folder}: same scenario, seed and tracker as {own[tracker].run.folder}; omit one"
             )
         if any(gt_text(shots) != gt_text(other) for other in own.values()):
             raise BadInput(
-                f"{run.folder}: with tracker {tracker} the robot went elsewhere, so the images differ; "
+                f"{run.folder}: with tracker {tracker} the robot took another path, so the images differ; "
                 "export one tracker at a time"
             )
         own[tracker] = shots

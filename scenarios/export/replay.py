@@ -1,10 +1,10 @@
-"""Replay a run, and write the images of its cameras: of one as a sequence, or of all with their labels.
+"""Replay a run, and write the images of one camera as a sequence, or of all cameras with labels.
 
-The world is built again and the robot driven by the commands that it was given then. The images are not kept
-unless a run is asked to, and the masks never are; but the same scenario, seed and versions give the same
-bytes. No tracker is needed for that: commands and tracks are those of the run.
+The world is built again, and the robot repeats the recorded commands. A run stores images only on request,
+and never masks; but the same scenario, seed and versions give the same bytes. No tracker is needed: commands
+and tracks are those of the run.
 
-Labels are images beside what each camera saw, for each pixel the person, the part of the body, and the depth:
+Label images give the person, the body part and the depth of each pixel:
 
 RUN/CAMERA/000001.png, ...                   every image of every camera, as `run --frames` leaves them
 RUN/truth/CAMERA/instance/000001.png         8 bits: number of the person seen, 0 for none
@@ -45,19 +45,19 @@ from peopleboy.sim.truth.truth import Box, Truth
 
 Play = Callable[[FinishedRun], Iterator[Tick]]
 
-# What must come out as it was; a hundredth of a pixel is what the labels promise.
+# Tolerances of a replay; labels are exact to a hundredth of a pixel.
 _COMPARED = ("id", "x_m", "y_m", "left_px", "top_px", "width_px", "height_px", "visible_px", "whole_px")
 _TOLERANCE = 0.01
 
 
 def replay(run: FinishedRun) -> Iterator[Tick]:
-    """Yield the ticks of a finished run, with images and masks, and explanations as far as it kept them.
+    """Yield the ticks of a finished run, with images and masks, and those explanations that were stored.
 
     Raises:
-        BadInput: the world does not come out as it was in the run, or PyBullet is not installed.
+        BadInput: the replay differs from the run, or PyBullet is not installed.
     """
     from peopleboy.sim.world import (
-        SimulatedWorld,  # here, as what is written can be exported without PyBullet
+        SimulatedWorld,  # here, as stored data can be exported without PyBullet
     )
 
     files = run.files()
@@ -84,7 +84,7 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
 
 
 def counted(report: Callable[[int], None]) -> Play:
-    """Return a `replay` that reports each tick by its number, counted on over all runs."""
+    """Return a `replay` that reports each tick by its number, which continues over all runs."""
     number = count(1)
 
     def play(run: FinishedRun) -> Iterator[Tick]:
@@ -111,14 +111,14 @@ def _compare(tick: Tick, robot: Row, people: Sequence[Row], run: FinishedRun) ->
     )
     if not is_same:
         raise BadInput(
-            f"{run.folder}: frame {tick.frame} does not come out as in this run{_why(run)}; run it again"
+            f"{run.folder}: frame {tick.frame} of the replay differs from the run{_why(run)}; run it again"
         )
 
 
 def _aligned(
     was: NDArray[np.float64], now: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return both with what is within the tolerance made equal."""
+    """Return both tables, with values within the tolerance made equal."""
     if was.shape != now.shape:
         return was, now
     is_close = np.isclose(was, now, rtol=0.0, atol=_TOLERANCE, equal_nan=True)
@@ -131,7 +131,7 @@ def _numbers(rows: Sequence[Row]) -> NDArray[np.float64]:
 
 
 def _why(run: FinishedRun) -> str:
-    """Name the packages that have changed since."""
+    """Describe the packages whose version has changed since the run."""
     before, now = run.about.versions, versions()
     changed = [f"{name} {was}, now {now[name]}" for name, was in before.items() if now.get(name, was) != was]
     return f" (made with {'; '.join(changed)})" if changed else ""
@@ -142,8 +142,8 @@ class OneCamera:
     """The images of one camera in a run, counted from 1 without gaps.
 
     Attributes:
-        run: which.
-        name: of the camera.
+        run: the run.
+        name: name of the camera.
         every: frames of the run from one image to the next.
     """
 
@@ -153,17 +153,17 @@ class OneCamera:
 
     @property
     def frames(self) -> Sequence[int]:
-        """The run's frames in which it took an image."""
+        """The frames of the run in which the camera took an image."""
         return range(1, self.run.frames + 1, self.every)
 
     @property
     def rate_hz(self) -> int:
-        """Images a second."""
+        """Images per second."""
         return self.run.rate_hz // self.every
 
     @property
     def camera(self) -> CameraGeometry:
-        """Its geometry."""
+        """Geometry of the camera."""
         return self.run.robot.cameras[self.name].camera
 
     @property
@@ -173,17 +173,17 @@ class OneCamera:
 
     @property
     def truth_file(self) -> Path:
-        """Its truth as MOTChallenge text, with the run's frames."""
+        """File of its ground truth as MOTChallenge text, with frames of the run."""
         return truth_files(self.run.folder, self.name)[0]
 
     @property
     def tracks_file(self) -> Path:
-        """What the tracker gave in its images as MOTChallenge text, with the run's frames; may be missing."""
+        """File of the tracks in its images as MOTChallenge text, with frames of the run; may be missing."""
         folder = self.run.folder
         return folder / "tracks.txt" if self.name == "thermal" else folder / "tracks" / f"{self.name}.txt"
 
     def number(self, frame: int) -> int:
-        """The number of the image that it took in a frame of the run."""
+        """Return the number of the image that it took in a frame of the run."""
         return (frame - 1) // self.every + 1
 
 
@@ -200,7 +200,7 @@ def one_camera(run: FinishedRun, name: str) -> OneCamera:
 
 
 def with_people(run: FinishedRun, name: str) -> OneCamera:
-    """Find a camera of a run in whose images boxes make sense.
+    """Find a camera of a run that has boxes of people.
 
     Raises:
         BadInput: the camera is unknown.
@@ -216,11 +216,11 @@ def write_camera_images(shots: OneCamera, play: Play, place: Callable[[int], Pat
 
     Args:
         shots: the camera and its run.
-        play: gives the run's ticks.
-        place: names the file of an image by its number, from 1.
+        play: returns the ticks of the run.
+        place: returns the file of an image from its number, from 1.
 
     Raises:
-        BadInput: a file cannot be written, or the run does not come out as it was.
+        BadInput: a file cannot be written, or the replay differs from the run.
     """
     written = [shots.run.folder / shots.name / image_file(frame) for frame in shots.frames]
     if all(path.is_file() for path in written):
@@ -233,13 +233,13 @@ def write_camera_images(shots: OneCamera, play: Play, place: Callable[[int], Pat
 
 
 CORNER_PX: Final = 0.5
-SEEN, HIDDEN, OUTSIDE = 2, 1, 0  # of keypoints, in both
+SEEN, HIDDEN, OUTSIDE = 2, 1, 0  # visibility flags of keypoints, in COCO and YOLO
 
 Keypoint = tuple[float, float, int]
 
 
 def from_corner(box: Box | None) -> list[float] | None:
-    """Count a box's pixels from the image's corner, to a thousandth."""
+    """Return a box with pixels counted from the image's corner, rounded to a thousandth."""
     if box is None:
         return None
     left, top, width, height = box
@@ -249,11 +249,11 @@ def from_corner(box: Box | None) -> list[float] | None:
 def keypoints_from_corner(
     joints_px: Sequence[Sequence[float]], is_visible: Sequence[bool], size: tuple[int, int]
 ) -> list[Keypoint]:
-    """Return u, v and 2 for a joint that is seen, 1 for a hidden one, and zeros for one outside the image.
+    """Return u, v and a flag for each joint: 2 for visible, 1 for hidden; zeros for joints outside the image.
 
     Args:
         joints_px: (17, 2) u, v from the middle of the first pixel; NaN behind the camera.
-        is_visible: (17,) whether each is seen.
+        is_visible: (17,) whether each joint is visible.
         size: width and height of the image [px].
     """
     width, height = size
@@ -269,10 +269,10 @@ KINDS: Final = ("instance", "body_part", "depth")
 
 
 def write_label_images(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
-    """Write the images of each run, and what is true of each pixel.
+    """Write the images of each run, and the ground truth of each pixel.
 
     Raises:
-        BadInput: a file cannot be written, or a run does not come out as it was.
+        BadInput: a file cannot be written, or the replay differs from the run.
     """
     for run in runs:
         own = folder / run.name
@@ -291,7 +291,7 @@ def write_label_images(runs: Sequence[FinishedRun], folder: Path, play: Play) ->
 
 
 def label_images(truth: Truth) -> dict[str, Stored]:
-    """Return what is true of each pixel (H, W), by kind: numbers of 8 bits, and depth of 16 [mm]."""
+    """Return the ground truth of each pixel (H, W), by kind: 8-bit numbers, and 16-bit depth [mm]."""
     return dict(zip(KINDS, (truth.instance, truth.body_part, millimetres(truth.depth_m)), strict=True))
 
 

@@ -1,4 +1,4 @@
-"""Split data sets into training, validation and test runs, so that no export trains on test runs."""
+"""Split data sets into training, validation and test runs, so that exports keep test runs apart."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,32 +7,32 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 
 ABOUT = "dataset.json"
-"""The file that a finished set has."""
+"""File that only a finished set has."""
 
 SPLITS = ("train", "val", "test")
 _TURNS = ("train", "train", "train", "train", "train", "val", "test")
 
 
 def split_of(seed: int) -> str:
-    """Return the split that a seed belongs to, in every scenario: five sevenths train, one val, one test.
+    """Return the split of a seed, in every scenario: five sevenths train, one val, one test.
 
-    It does not depend on how many seeds there are, so that a set that grows never moves a run.
+    It does not depend on the number of seeds, so that runs keep their split when a set grows.
     """
     return _TURNS[seed % len(_TURNS)]
 
 
 def split_lines(names: Sequence[str], seeds: Sequence[int], split: str) -> str:
-    """The file of one split: its runs' folders, one a line."""
+    """Return the file of a split, with the folders of its runs, one per line."""
     return "".join(f"{name}\n" for name, seed in zip(names, seeds, strict=True) if split_of(seed) == split)
 
 
 def split_file(folder: Path, split: str) -> Path:
-    """Where a set keeps the names of a split's runs."""
+    """Return the file with the names of a split's runs."""
     return folder / "splits" / f"{split}.txt"
 
 
 def lacking_splits(seeds: range) -> str:
-    """Return which splits have no run, and how many seeds would do; empty if each has one."""
+    """Describe the splits without a run, and the number of seeds needed; empty if each has one."""
     empty = [split for split in SPLITS if split not in map(split_of, seeds)]
     if not empty:
         return ""
@@ -43,10 +43,10 @@ def lacking_splits(seeds: range) -> str:
 
 
 def read_split(run: Path) -> str | None:
-    """Return the split of a run's folder; None if it lies in no rendered set.
+    """Return the split of a run's folder; None if it is not in a rendered set.
 
     Raises:
-        BadInput: it lies in one, and in none of its splits, or in several.
+        BadInput: the run is in a set, but in none or several of its splits.
     """
     folder = run.resolve().parent
     files = {split: split_file(folder, split) for split in SPLITS}
@@ -67,15 +67,15 @@ def read_split(run: Path) -> str | None:
 
 
 def refuse_unfinished(folder: Path) -> None:
-    """Refuse a set of which runs may be missing; folders that are no set are none of its business.
+    """Refuse an unfinished set, of which runs may be missing; accept folders that are no set.
 
     Raises:
-        BadInput: it is not finished.
+        BadInput: the set is not finished.
     """
     if is_set(folder) and not (folder / ABOUT).is_file():
         raise BadInput(
-            f"{folder}: this set is not finished; the same `peopleboy render` goes on where it was, "
-            "or name runs of it"
+            f"{folder}: this set is not finished; repeat its `peopleboy render` to complete it, "
+            "or give single runs of it"
         )
 
 
@@ -85,17 +85,17 @@ def is_set(folder: Path) -> bool:
 
 
 def by_split(runs: Sequence[FinishedRun]) -> dict[str | None, list[FinishedRun]]:
-    """Sort runs by the splits of the rendered sets that they lie in; None alone if they lie in none.
+    """Group runs by the splits of their rendered sets; the only key is None if they are in none.
 
     Raises:
-        BadInput: some lie in rendered sets and some do not, or one is not in its set's splits.
+        BadInput: only some runs are in rendered sets, or one is not in its set's splits.
     """
     found: dict[str | None, list[FinishedRun]] = {}
     for run in runs:
         found.setdefault(read_split(run.folder), []).append(run)
     if None in found and len(found) > 1:
         raise BadInput(
-            f"{found[None][0].folder}: lies in no rendered set, other runs do and have splits; "
-            "export them one after the other"
+            f"{found[None][0].folder}: is not in a rendered set, while other runs are and have splits; "
+            "export them separately"
         )
     return {split: found[split] for split in (None, *SPLITS) if split in found}

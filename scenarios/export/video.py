@@ -1,4 +1,4 @@
-"""MP4: thermal and colour side by side, or one camera alone, with truth and tracks drawn in: RUN.mp4."""
+"""MP4: thermal and colour side by side, or one camera, with ground truth and tracks: RUN.mp4."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -30,20 +30,20 @@ HEIGHT_PX: Final = 480
 BAR_PX: Final = 32
 
 _WIDEST_PX: Final = 4 * HEIGHT_PX  # of one image
-_QUALITY: Final = "20"  # CRF: 0 loses nothing, 18 nothing to be seen
+_QUALITY: Final = "20"  # CRF: 0 is lossless, 18 visually lossless
 _BAR: Final[Rgb] = (22, 24, 28)
 _WORDS: Final[Rgb] = (225, 225, 225)
 _FONT: Final = cv2.FONT_HERSHEY_SIMPLEX
 
 
 def write_mp4(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str | None = None) -> None:
-    """Write a film of each run that every browser shows: H.264, its index in front.
+    """Write a video of each run that every browser plays: H.264, with the index in front.
 
     Args:
-        runs: which.
-        folder: where the films go.
-        play: gives a run's ticks.
-        camera: whose images are shown; None for thermal and colour.
+        runs: the runs to write.
+        folder: output folder.
+        play: returns the ticks of a run.
+        camera: camera of the images; None for thermal and colour.
 
     Raises:
         BadInput: the package that encodes is not installed, or a run has no such camera.
@@ -62,12 +62,12 @@ def _write_film(path: Path, shots: Sequence[OneCamera], play: Play) -> None:
 
 
 class FilmWriter:
-    """Writes a film frame by frame, H.264, which every browser shows; use it as a context manager.
+    """Writes an H.264 video frame by frame; use it as a context manager.
 
     Args:
-        path: of the film.
-        rate_hz: frames a second.
-        option: of the command line that asks for it.
+        path: file of the video.
+        rate_hz: frames per second.
+        option: the command-line option that requests it, for errors.
 
     Raises:
         BadInput: the package that encodes is not installed.
@@ -93,7 +93,7 @@ class FilmWriter:
         self._file.close()
 
     def add(self, picture: Picture) -> None:
-        """Add a frame; a last odd row or column is cut off, as H.264 wants it."""
+        """Add a frame; a last odd row or column is cut off, as H.264 requires even sizes."""
         height, width = (side // 2 * 2 for side in picture.shape[:2])
         if self._is_new:
             self._stream.height, self._stream.width = height, width
@@ -103,15 +103,15 @@ class FilmWriter:
 
 
 def draw_film_frame(tick: Tick, robot: RobotConfig, title: str, cameras: Sequence[str]) -> Picture:
-    """Draw one frame: the cameras from left to right, `HEIGHT_PX` high each, and a line of text above.
+    """Draw one frame: the cameras from left to right, each `HEIGHT_PX` high, and a line of text above.
 
-    Width and height are even, as H.264 with halved colour wants them.
+    Width and height are even, as H.264 with chroma subsampling requires.
     """
     images = np.concatenate([_picture(tick, name, robot) for name in cameras], axis=1)
     bar = np.full((BAR_PX, images.shape[1], 3), _BAR, np.uint8)
     words = f"{title}    {tick.observation.time_s:5.1f} s    {tick.mode}"
     cv2.putText(bar, words, (10, 21), _FONT, 0.5, _WORDS, 1, cv2.LINE_AA)
-    legend = "dashed: truth, share visible"
+    legend = "dashed: ground truth, visible fraction"
     left = bar.shape[1] - _width(legend) - 10
     if left > _width(words) + 20:
         cv2.putText(bar, legend, (left, 21), _FONT, 0.5, TRUTH, 1, cv2.LINE_AA)
@@ -119,12 +119,12 @@ def draw_film_frame(tick: Tick, robot: RobotConfig, title: str, cameras: Sequenc
 
 
 def _width(words: str) -> int:
-    """How wide words are on the bar [px]."""
+    """Return the width [px] of a text on the bar."""
     return int(cv2.getTextSize(words, _FONT, 0.5, 1)[0][0])
 
 
 def _picture(tick: Tick, camera: str, robot: RobotConfig) -> Picture:
-    """Draw the image of a camera, tracks where they are known, and truth."""
+    """Draw the image of a camera with tracks and ground truth, if it has any."""
     image = show_image(tick.observation.images, camera, robot.cameras[camera])
     scale = min(HEIGHT_PX / image.shape[0], _WIDEST_PX / image.shape[1])
     picture, plates = enlarge(image, scale), list[Plate]()
@@ -136,7 +136,7 @@ def _picture(tick: Tick, camera: str, robot: RobotConfig) -> Picture:
 
 
 def _framed(picture: Picture) -> Picture:
-    """Cut a last odd column off, and put a lower picture into the middle of `HEIGHT_PX` rows."""
+    """Cut off a last odd column, and centre a lower picture in `HEIGHT_PX` rows."""
     picture = picture[:HEIGHT_PX, : picture.shape[1] // 2 * 2]
     frame = np.full((HEIGHT_PX, picture.shape[1], 3), _BAR, np.uint8)
     top = (HEIGHT_PX - picture.shape[0]) // 2

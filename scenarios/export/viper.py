@@ -1,11 +1,11 @@
 """ViPER XML, the format of the sources' evaluation tool: RUN/truth.xgtf and RUN/tracks.xgtf.
 
-They speak of the thermal images unless another camera is asked for, whose images are counted from 1 too;
-there is a file of results if the tracker gave boxes in them.
+The default camera is the thermal one. Images of any camera are numbered from 1. Results are written if the
+tracker has boxes in its images.
 
 People and tracks are objects whose attributes change from frame to frame. ViPER's schema allows whole pixels
-inside the image only in a `bbox`; the four decimal attributes beside it hold the box as it is. Of one across
-a panorama's seam one `bbox` holds the part at the right border, and another the part at the left.
+inside the image only in a `bbox`; four further decimal attributes hold the exact box. For a box across a
+panorama's seam, one `bbox` holds the part at the right border, and another the part at the left.
 """
 
 import math
@@ -43,7 +43,7 @@ TRACK = {"CONFIDENCE": "fvalue"}
 
 @dataclass(frozen=True, slots=True)
 class _Person:
-    """What is said about one person or track, by frame."""
+    """The attributes of one person or track, by frame."""
 
     name: str
     boxes: dict[int, Box] = field(default_factory=dict)
@@ -62,7 +62,7 @@ def write_viper(
     play: Play,  # noqa: ARG001
     camera: str = "thermal",
 ) -> None:
-    """Write a file of truth and one of results for each run.
+    """Write a file of ground truth and one of results for each run.
 
     Raises:
         BadInput: a run has no such camera.
@@ -169,7 +169,7 @@ def _object(
 
 
 def _location(attribute: ElementTree.Element, part: int, person: _Person, shots: OneCamera) -> None:
-    """Return where in the image one part of each box is, if there is such a part."""
+    """Return the place of one part of each box in the image, if the box has such a part."""
     parts = {frame: box_parts(box, shots.camera) for frame, box in person.boxes.items()}
     for frame, box in ((frame, own[part]) for frame, own in parts.items() if part < len(own)):
         pixels = whole_pixels(box, *shots.size)
@@ -179,7 +179,7 @@ def _location(attribute: ElementTree.Element, part: int, person: _Person, shots:
 
 
 def _framespan(frames: Iterable[int]) -> str:
-    """Write frames as ViPER does: 3:7 12:40."""
+    """Format frames as ViPER does: 3:7 12:40."""
     spans: list[list[int]] = []
     for frame in sorted(frames):
         if spans and frame == spans[-1][1] + 1:

@@ -1,14 +1,14 @@
-"""YOLO: a folder as Ultralytics and everybody's loaders read it, of boxes or of poses.
+"""YOLO: a folder of boxes or poses in the format of Ultralytics and common loaders.
 
-data.yaml                      which folders are for what; classes; keypoints and their mirror images
+data.yaml                      folders of each split; classes; keypoints and their mirror images
 images/train/RUN_000001.png    images of the camera
 labels/train/RUN_000001.txt    class, and middle, width and height of the visible box, as shares of the image;
                                of poses also u, v and visibility of each keypoint
 
-Runs that lie in no rendered set have no splits: they are in images/all, which data.yaml names for training
-and for validation, as YOLO wants both. A person across a panorama's seam has two boxes; each keypoint goes
-with the nearer one. Slivers are left out: boxes narrower or lower than 3 px, or what is asked for, as
-Ultralytics drops those up to 2 px of the images that it alters.
+Runs outside a rendered set have no splits: they are in images/all, which data.yaml names for training and for
+validation, as YOLO requires both. A person across a panorama's seam has two boxes; each keypoint belongs to
+the nearer one. Slivers are omitted: boxes narrower or lower than 3 px, or another limit, as Ultralytics drops
+boxes of up to 2 px from augmented images.
 """
 
 from collections import defaultdict
@@ -57,18 +57,18 @@ def write_yolo(
     *,
     has_poses: bool = False,
 ) -> None:
-    """Write boxes round what is visible of people, but for those narrower or lower than `least_px`.
+    """Write boxes around the visible parts of people, except boxes narrower or lower than `least_px`.
 
     Args:
-        runs: which.
-        folder: to leave.
-        play: gives a run's ticks.
-        camera: whose images and boxes.
-        least_px: least width and height of boxes [px].
-        has_poses: whether they come with the 17 keypoints of COCO.
+        runs: the runs to write.
+        folder: output folder.
+        play: returns the ticks of a run.
+        camera: camera of the images and boxes.
+        least_px: minimum width and height of boxes [px].
+        has_poses: whether labels include the 17 keypoints of COCO.
 
     Raises:
-        BadInput: the runs cannot be sorted by split, or one has no such camera of 8 bits.
+        BadInput: some runs have splits and others do not, or one has no such 8-bit camera.
     """
     what = _Labels(camera, least_px, has_poses)
     sorted_runs = {
@@ -91,7 +91,7 @@ write_yolo_pose = partial(write_yolo, has_poses=True)
 
 
 class _Labels(NamedTuple):
-    """Of whose images, of boxes how large at least [px], and whether of poses, too."""
+    """What is exported: camera, minimum size of boxes [px], and whether poses are included."""
 
     camera: str
     least_px: float
@@ -103,7 +103,7 @@ def _write_images(shots: OneCamera, folder: Path, play: Play) -> None:
 
 
 def _stem(shots: OneCamera, number: int) -> str:
-    """Name an image, and its labels."""
+    """Return the stem of the files of an image and its labels."""
     return f"{shots.run.name}_{number:06d}"
 
 
@@ -111,13 +111,13 @@ def _eight_bits(run: FinishedRun, camera: str) -> OneCamera:
     found = with_people(run, camera)
     if kind_of(run.robot.cameras[camera]).dtype is not np.uint8:
         raise BadInput(
-            f"{run.folder}: camera {camera!r} has images of 16 bits, which YOLO cuts; give another"
+            f"{run.folder}: camera {camera!r} has 16-bit images, which YOLO truncates; give another camera"
         )
     return found
 
 
 def _settings(splits: Collection[str], has_poses: bool) -> Mapping[str, Any]:
-    """Describe what data.yaml says; its folders are looked for where it lies."""
+    """Return the content of data.yaml; its folders are relative to its own place."""
     named = {split: f"images/{split}" for split in splits}
     if EVERYTHING in named:
         named = dict.fromkeys(("train", "val"), named[EVERYTHING])
@@ -126,14 +126,14 @@ def _settings(splits: Collection[str], has_poses: bool) -> Mapping[str, Any]:
 
 
 def _mirrored() -> list[int]:
-    """Return which keypoint each one is in a mirror."""
+    """Return the index of each keypoint's mirror image."""
     swapped = str.maketrans({"<": "right_", ">": "left_"})
     marked = [name.replace("left_", "<").replace("right_", ">") for name in JOINT_NAMES]
     return [JOINT_NAMES.index(name.translate(swapped)) for name in marked]
 
 
 def _labels(shots: OneCamera, what: _Labels) -> Iterator[tuple[int, str]]:
-    """Yield the labels of each image, a line a box; of an image without people, none."""
+    """Yield the labels of each image, one line per box; none for an image without people."""
     _, table = truth_files(shots.run.folder, shots.name)
     people: dict[int, list[Row]] = defaultdict(list)
     for row in read_table(table, TRUTH, _COLUMNS).to_pylist():
@@ -164,7 +164,7 @@ def _middle(box: Box, shots: OneCamera) -> Iterator[str]:
 
 
 def _poses(points: Sequence[Keypoint], part: Box, parts: Sequence[Box], shots: OneCamera) -> Iterator[str]:
-    """Return keypoints as shares of the image; of a box in two parts, those that are nearer to this one."""
+    """Return keypoints as shares of the image; for a box in two parts, those nearer to this part."""
     columns, rows = shots.size
     for u, v, flag in points:
         is_here = flag != OUTSIDE and min(parts, key=lambda other: _aside(u, other)) == part
@@ -172,5 +172,5 @@ def _poses(points: Sequence[Keypoint], part: Box, parts: Sequence[Box], shots: O
 
 
 def _aside(u: float, box: Box) -> float:
-    """How far a column lies from the middle of a box [px]."""
+    """Return the distance of a column from the middle of a box [px]."""
     return abs(u - CORNER_PX - box[0] - box[2] / 2)

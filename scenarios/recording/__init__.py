@@ -1,1 +1,1 @@
-"""A run as a rerun recording, and rerun's viewer: nothing else here imports rerun."""
+"""Rerun recordings of runs, and rerun's viewer; no other package imports rerun."""

@@ -1,7 +1,7 @@
-"""Draw what a tracker explains beyond its tracks, by its kind.
+"""Draw a tracker's explanation of its tracks, by kind of explanation.
 
-On the thermal image these are sections and samples of contours, or detections; on further cameras' images,
-lines and the scene without people.
+On the thermal image these are contour sections and particles, or detections. On images of further cameras
+these are lines and the background.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -41,7 +41,7 @@ from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
 from peopleboy.tracker.sensors.thermal import DetectionExplanation
 from peopleboy.tracker.track import Box, FloorPlace, Track
 
-# ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for one; in thresholds.
+# ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for a person; in thresholds.
 _STEPS = (0.0, 1.0, 2.0)
 _SHADES = np.array([(215, 48, 39), (255, 255, 191), (69, 117, 180)])
 OUT_OF_VIEW: Rgb = (110, 110, 110)
@@ -49,11 +49,11 @@ LIKELY: Rgb = (116, 173, 209)
 UNLIKELY: Rgb = (110, 110, 110)
 _CORNERS = 4  # of a box
 _ARM = 0.3  # of a corner, as a share of the box's width
-_HALF = 0.5  # share of a section that must be in view
+_HALF = 0.5  # least visible share of a section
 HISTOGRAM: Rgb = (245, 245, 245)
 NOBODYS: Rgb = (150, 150, 150)
 VERIFIED: Rgb = (245, 245, 245)
-_BAR_PX = 0.3  # height of a bar for each pixel that a column has
+_BAR_PX = 0.3  # height of a bar per pixel that is set in a column
 _ROUND = np.linspace(0.0, 2.0 * np.pi, 49)
 
 Line = NDArray[np.float64]
@@ -61,10 +61,10 @@ Line = NDArray[np.float64]
 
 @singledispatch
 def draw_explained_lines(explanation: object, tick: Tick) -> Lines:
-    """Draw lines on the thermal image that explain a tick's tracks; none for an unknown kind.
+    """Return lines on the thermal image that explain a tick's tracks; none for an unknown kind.
 
-    A new kind of explanation registers here, and below, how it is drawn in recordings; one that joins others
-    is drawn by its parts.
+    A new kind of explanation registers its drawing function for recordings here and below; a combined
+    explanation is drawn part by part.
     """
     drawn = (draw_explained_lines(part, tick) for part in parts_of(explanation))
     nothing = Lines(lines_of([], 2), colours_of([]))
@@ -89,7 +89,7 @@ def _(explanation: DetectionExplanation, tick: Tick) -> Lines:  # noqa: ARG001
 
 @singledispatch
 def draw_explained_points(explanation: object) -> Mapping[str, Points]:
-    """Draw points on the thermal image that explain a tick's tracks, by layer."""
+    """Return points on the thermal image that explain a tick's tracks, by layer."""
     return {
         layer: points
         for part in parts_of(explanation)
@@ -106,12 +106,12 @@ def _(explanation: ContourExplanation) -> Mapping[str, Points]:
 
 
 def likeness_by_track(explanation: object) -> Mapping[int, float]:
-    """Return how much people resemble those they are taken for, 0..1, by track; of trackers that compare."""
+    """Return the similarity to the learned person, 0..1, by track; empty if the tracker compares none."""
     return explanation.likeness if isinstance(explanation, AttentiveExplanation) else {}
 
 
 def box_corners(box: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Draw the corners of a box (4,) [px] as lines (4, 3, 2), which leave the track's own box to be seen."""
+    """Return the corners of a box (4,) [px] as lines (4, 3, 2), so that the track's own box stays visible."""
     left, top, width, height = box
     arm = _ARM * width
     inwards = np.array([(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
@@ -123,10 +123,11 @@ def box_corners(box: NDArray[np.float64]) -> NDArray[np.float64]:
 def section_marks(
     tracks: Sequence[Track], evidence: Mapping[int, Evidence], explanation: ContourExplanation
 ) -> Lines:
-    """Draw every section of every track, from red, against a person, by pale yellow, undecided, to blue.
+    """Draw every contour section of every track, coloured by its evidence.
 
-    Undecided is the threshold of the fitness. What is mostly hidden or outside the image is grey. The hips,
-    where no tracker looks, have the colour of the track.
+    Red is evidence against a person, pale yellow is undecided (the threshold of the fitness), and blue is
+    evidence for a person. Sections that are mostly hidden or outside the image are grey. The hips, which no
+    tracker measures, have the colour of the track.
     """
     config = explanation.config
     drawn = np.ones(SECTIONS + 1, np.bool_)
@@ -141,7 +142,7 @@ def section_marks(
 
 
 def _shades(evidence: Evidence, threshold: float) -> NDArray[np.uint8]:
-    """Colour the sections (8, 3)."""
+    """Return the colours (8, 3) of the sections."""
     responses = np.nan_to_num(evidence.response) / threshold
     shades = np.stack([np.interp(responses, _STEPS, channel) for channel in _SHADES.T], axis=1)
     return np.where((evidence.seen >= _HALF)[:, None], np.rint(shades), OUT_OF_VIEW).astype(np.uint8)
@@ -149,10 +150,10 @@ def _shades(evidence: Evidence, threshold: float) -> NDArray[np.uint8]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sketch:
-    """What explains the newest image of one camera.
+    """The explanation of the newest image of one camera.
 
     Attributes:
-        background: (H, W) or (H, W, 3) the empty scene as the tracker knows it; None if it knows none.
+        background: (H, W) or (H, W, 3) the tracker's background image; None without one.
         lines: K lines of (n, 2) [px].
         colour: (K, 3).
     """
@@ -163,7 +164,7 @@ class Sketch:
 
     @classmethod
     def of(cls, background: NDArray[np.uint8] | None, coloured: Sequence[tuple[Line, Rgb]]) -> "Sketch":
-        """Draw lines in their colours."""
+        """Make a sketch of lines, each with its colour."""
         return cls(background, [line for line, _ in coloured], colours_of(colour for _, colour in coloured))
 
 
@@ -171,10 +172,10 @@ class Sketch:
 def draw_explained_sketches(
     explanation: object, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
-    """Draw what explains tracks in further cameras' images, by camera; nothing for an unknown kind.
+    """Return the explanations of further cameras' images by camera; none for an unknown kind.
 
-    A new kind of explanation registers here how it is drawn in recordings; one that joins others is drawn by
-    its parts.
+    A new kind of explanation registers its drawing function for recordings here; a combined explanation is
+    drawn part by part.
     """
     return {
         name: sketch
@@ -232,7 +233,7 @@ def _(
 
 
 def _floor_ellipses(tracks: Sequence[Track], camera: CameraGeometry) -> list[tuple[Line, Rgb]]:
-    """Draw `floor_ellipse` of every track with a place, in its colour."""
+    """Draw the `floor_ellipse` of every track with a position, in the track's colour."""
     return [
         (line, track_colour(track.id))
         for track in tracks
@@ -242,15 +243,15 @@ def _floor_ellipses(tracks: Sequence[Track], camera: CameraGeometry) -> list[tup
 
 
 def outlines_of(mask: NDArray[np.bool_]) -> list[Line]:
-    """Trace closed lines (n, 2) round all that is set in an image (H, W), through its outermost pixels."""
-    # Pixels of two by two have outlines even if they are alone.
+    """Return closed lines (n, 2) through the outermost pixels of all regions set in an image (H, W)."""
+    # Enlarged to 2 x 2 pixels, a single pixel has an outline too.
     fine = np.repeat(np.repeat(np.asarray(mask, np.uint8), 2, axis=0), 2, axis=1)
     found, _ = cv2.findContours(fine, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
     return [(np.concatenate([line, line[:1]])[:, 0] - 0.5) / 2.0 for line in found]
 
 
 def column_bars(figure: MeasuredFigure) -> list[Line]:
-    """Draw the histogram of columns along the lower border, from the person's first to its last column."""
+    """Draw the histogram of columns along the lower border, from the person's first column to the last."""
     width, bottom = len(figure.columns), len(figure.rows) - 0.5
     columns = figure.first_column + np.arange(int(figure.cues.width_px))
     heights = bottom - _BAR_PX * figure.columns[columns % width]
@@ -259,7 +260,7 @@ def column_bars(figure: MeasuredFigure) -> list[Line]:
 
 
 def row_bars(figure: MeasuredFigure) -> Line:
-    """Draw the histogram of rows beside the person, to the right if there is room for it."""
+    """Draw the histogram of rows beside the person, on the right if there is room."""
     left, _, width, _ = figure.box
     is_right = left + 2.0 * width < len(figure.columns)
     edge, way = (left + width, 1.0) if is_right else (left, -1.0)
@@ -268,7 +269,7 @@ def row_bars(figure: MeasuredFigure) -> Line:
 
 
 def floor_ellipse(place: FloorPlace, camera: CameraGeometry) -> list[Line]:
-    """Draw the ellipse on the floor that holds 95 % of where a person may stand, in parts at the seam."""
+    """Draw the 95 % ellipse of a person's floor position, split at the seam."""
     xx, xy, yy = place.covariance_m2
     variances, angle = principal_axes(xx, xy, yy)
     axes = Pose2(heading=angle).rotation
@@ -280,33 +281,33 @@ def floor_ellipse(place: FloorPlace, camera: CameraGeometry) -> list[Line]:
 
 
 def _frame(box: Box) -> Line:
-    """Draw a box (5, 2)."""
+    """Return the closed outline (5, 2) of a box."""
     left, top, width, height = box
     right, bottom = left + width, top + height
     return np.array([(left, top), (right, top), (right, bottom), (left, bottom), (left, top)])
 
 
 def _cross(place: tuple[float, float], reach: float) -> list[Line]:
-    """Draw an upright cross (2, 2) and (2, 2) about a place."""
+    """Return an upright cross, lines (2, 2) and (2, 2), at a point."""
     u, v = place
     return [np.array([(u - reach, v), (u + reach, v)]), np.array([(u, v - reach), (u, v + reach)])]
 
 
 def _brightened(scores: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.uint8]:
-    """Draw scores 0..1 as an image (H, W) of an image's size, brighter than they are."""
+    """Return scores 0..1 as a brightened image with the (H, W) of a camera's image."""
     grey = np.rint(255.0 * np.sqrt(np.clip(scores, 0.0, 1.0))).astype(np.uint8)
     size = (shape[1], shape[0])
     return np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_LINEAR), np.uint8)
 
 
 def _parts(line: Line, around: float) -> Iterator[Line]:
-    """Cut a line (n, 2) where it goes on at the other border; lone points are left out."""
+    """Split a line (n, 2) where it crosses the seam; single points are dropped."""
     jumps = np.flatnonzero(np.abs(np.diff(line[:, 0])) > around / 2.0) + 1
     yield from (part for part in np.split(line, jumps) if len(part) > 1)
 
 
 def _steps(places: NDArray[np.int64], ends: NDArray[np.floating], base: float) -> Line:
-    """Draw bars one pixel wide beside each other from a base, as one line (2 n + 2, 2)."""
+    """Return a bar chart, bars one pixel wide on a common base, as one line (2 n + 2, 2)."""
     sides = np.repeat(places, 2) + np.tile([-0.5, 0.5], len(places))
     heights = np.repeat(ends, 2)
     return np.stack([np.r_[sides[0], sides, sides[-1]], np.r_[base, heights, base]], axis=1)

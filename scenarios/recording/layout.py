@@ -1,18 +1,18 @@
-"""Name the entities of a recording, lay out its views, and log what never changes.
+"""Name the entities of a recording, lay out its views, and log its static content.
 
-world/place/...             floor, walls and things; the ceiling is there, but not shown at first
-world/place/moved/NAME      a thing that is moved, in a frame that goes with it
-world/robot                 its pose; below it body and cameras, with what is drawn on their images:
+world/place/...             floor, walls and objects; the ceiling is hidden at first
+world/place/moved/NAME      an object that is moved, in its own moving frame
+world/robot                 its pose; its children are body and cameras, with the overlays of their images:
 world/robot/thermal/...     image, tracks with evidence, particles, truth
 world/robot/colour/...      image, tracks, truth
 world/robot/CAMERA/...      image, truth, and tracks if they have boxes there, of any further camera
-world/robot/CAMERA/explained  what the tracker explains of that image: the empty scene, and lines
-world/points/CAMERA         what a depth camera sees, as points with their colours
-world/robot/places          where on the floor the tracker takes people to be, with 95 % ellipses
+world/robot/CAMERA/explained  the tracker's explanation of that image: background, and lines
+world/points/CAMERA         point cloud of a depth camera, in colour
+world/robot/places          the tracks' positions on the floor, with 95 % ellipses
 world/people/NAME/body      capsules, and the name
-world/occlusions            arrows from who hides to who is hidden
-world/trails                where robot and people went
-curves/..., events          what the lower row of views shows
+world/occlusions            arrows from the occluder to the occluded person
+world/trails                paths of robot and people
+curves/..., events          content of the lower row of views
 """
 
 import math
@@ -42,7 +42,7 @@ PLACES: Final = "world/robot/places"
 TRAILS: Final = "world/trails"
 EVENTS: Final = "events"
 
-# What a layer on an image is made of, and its radius in points of the screen.
+# Archetype of each layer on an image, and its radius in points of the screen.
 LAYERS: Final[dict[str, tuple[Any, float]]] = {
     "truth/boxes": (rr.Boxes2D, 0.6),
     "truth/names": (rr.Points2D, 0.0),
@@ -65,12 +65,12 @@ def camera_path(name: str) -> str:
 
 
 def points_path(camera: str) -> str:
-    """Return the entity of the points that a depth camera sees."""
+    """Return the entity of a depth camera's point cloud."""
     return f"world/points/{camera}"
 
 
 def thing_path(name: str) -> str:
-    """A thing that is moved."""
+    """Return the entity of an object that is moved."""
     return f"world/place/moved/{rr.escape_entity_path_part(name)}"
 
 
@@ -82,13 +82,13 @@ def person_path(name: str) -> str:
 def lay_out(
     config: WorldConfig, watched: Collection[str] = (), *, attends: bool = False, follows: bool = False
 ) -> rrb.Blueprint:
-    """Lay out: thermal on the left, colour, events, further cameras and the world beside it, curves below.
+    """Lay out thermal on the left, then colour, events, further cameras and the world; curves below.
 
     Args:
-        config: of the world.
-        watched: cameras that the tracker asks for.
-        attends: whether it explains where in colour images it looks for a person.
-        follows: whether the newest frame is shown as it comes; else it stands at the first one when opened.
+        config: configuration of the world.
+        watched: cameras that the tracker uses.
+        attends: whether the tracker explains its search for a person in colour images.
+        follows: whether the viewer follows the newest frame; else it opens at the first one.
     """
     cameras = {name: camera.camera for name, camera in config.robot.cameras.items()}
     thermal = _image_view(THERMAL, "Thermal: tracks with evidence, particles, truth", cameras.pop("thermal"))
@@ -104,7 +104,7 @@ def lay_out(
         _plot("motion", "Speed and turn rate", (-1.6, 1.6)),
     ]
     if attends:
-        plots.insert(1, _plot("likeness", "Likeness to who they are", (-0.05, 1.05), has_legend=False))
+        plots.insert(1, _plot("likeness", "Similarity to learned person", (-0.05, 1.05), has_legend=False))
     rows = [rrb.Horizontal(colour, events), *([rrb.Horizontal(*further)] if further else [])]
     right = rrb.Vertical(*rows, _world_view(config))
     above = rrb.Horizontal(thermal, right, column_shares=[1.0, 1.0])
@@ -117,7 +117,7 @@ def lay_out(
 
 
 def _colour_view(camera: CameraGeometry, *, attends: bool) -> rrb.Spatial2DView | rrb.Tabs:
-    """Show the colour camera; behind a tab, how much each place looks like the one on whom attention is."""
+    """Show the colour camera, and in a second tab the attention score of each place."""
     if not attends:
         return _image_view(COLOUR, "Colour: tracks, truth", camera)
     return rrb.Tabs(
@@ -130,7 +130,7 @@ def _colour_view(camera: CameraGeometry, *, attends: bool) -> rrb.Spatial2DView 
 
 
 def _further_view(name: str, camera: CameraGeometry, is_watched: bool) -> rrb.Spatial2DView | rrb.Tabs:
-    """Show a further camera; of a panorama that is watched, behind a tab, what it is compared with."""
+    """Show a further camera; for a panorama that the tracker uses, the background in a second tab."""
     path, words = camera_path(name), name.capitalize()
     contents = ("$origin/**", f"- $origin/{BACKGROUND}")
     if not is_watched:
@@ -152,7 +152,7 @@ def _image_view(
 
 
 def _world_view(config: WorldConfig) -> rrb.Spatial3DView:
-    """Look over the robot's right shoulder at the whole place; trails are shown from the start up to now."""
+    """Show the whole place from behind the robot; trails are shown from the start up to the current time."""
     min_x, min_y, max_x, max_y = config.place.bounds
     x, y, size = (min_x + max_x) / 2, (min_y + max_y) / 2, max(max_x - min_x, max_y - min_y)
     ahead, left = math.cos(config.robot.heading_rad), math.sin(config.robot.heading_rad)
@@ -161,17 +161,17 @@ def _world_view(config: WorldConfig) -> rrb.Spatial3DView:
     so_far = rrb.VisibleTimeRanges(
         [rr.VisibleTimeRange(timeline, start=start, end=now) for timeline in ("frame", "time")]
     )
-    # Boxes of people who are near reach far out of the image, and would cross the whole world.
+    # Boxes of people close to the camera extend far beyond the image, and would cross the whole world.
     cameras = config.robot.cameras
     layers = (*LAYERS, BACKGROUND)
     overlays = [f"- {path}/{layer}" for path in map(camera_path, cameras) for layer in layers]
-    # Where a picture that is not flat would hang, nobody can say.
+    # A panorama is not planar, so it has no image plane in the world.
     overlays += [
         f"- {camera_path(name)}/image"
         for name, camera in cameras.items()
         if not isinstance(camera.camera, Pinhole)
     ]
-    # The points of a depth image are there by themselves, in their own colours.
+    # The point cloud of a depth image is logged separately, in its own colours.
     overlays += [
         f"- {camera_path(name)}/image" for name, camera in cameras.items() if isinstance(camera, DepthConfig)
     ]
@@ -189,7 +189,7 @@ def _world_view(config: WorldConfig) -> rrb.Spatial3DView:
 
 
 def _plot(kind: str, name: str, span: tuple[float, float], *, has_legend: bool = True) -> rrb.TimeSeriesView:
-    """Plot curves; those of tracks have the colours of the tracks on the images, and need no legend."""
+    """Plot curves; those of tracks have the tracks' colours, and need no legend."""
     return rrb.TimeSeriesView(
         origin=f"curves/{kind}",
         name=name,
@@ -201,18 +201,18 @@ def _plot(kind: str, name: str, span: tuple[float, float], *, has_legend: bool =
 JPEG: Final = "image/jpeg"
 
 _ROBOT_CURVES = {
-    "curves/motion/speed": (("speed [m/s]", "speed asked for"), ((86, 180, 233), (52, 108, 140))),
-    "curves/motion/turn_rate": (("turn rate [rad/s]", "turn rate asked for"), ((230, 159, 0), (138, 95, 0))),
+    "curves/motion/speed": (("speed [m/s]", "commanded speed"), ((86, 180, 233), (52, 108, 140))),
+    "curves/motion/turn_rate": (("turn rate [rad/s]", "commanded turn rate"), ((230, 159, 0), (138, 95, 0))),
 }
 _POINT_M = 0.02
 
 
 class Still:
-    """Logs to a stream what holds for the whole recording.
+    """Logs the static content of a recording.
 
     Args:
-        stream: to which.
-        packing: media type of the images of cameras, those of depth aside.
+        stream: the recording stream.
+        packing: media type of camera images, except depth images.
     """
 
     def __init__(self, stream: rr.RecordingStream, packing: str = JPEG) -> None:
@@ -220,17 +220,17 @@ class Still:
         self._packing = packing
 
     def log_world(self, config: WorldConfig) -> None:
-        """Log the place, the robot and who will be there."""
+        """Log the place, the robot and the people."""
         self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         moved = {mover.name for mover in config.place.movers}
         self._log_moved([f for f in config.place.fixtures if f.name.split("/")[0] in moved])
         still = [f for f in config.place.fixtures if f.name.split("/")[0] not in moved]
         for group, fixtures in group_fixtures(still).items():
-            # Whoever looks in from outside looks through the walls.
+            # Walls must not block the view from outside.
             fill = FillMode.TransparentFillMajorWireframe if group == "walls" else FillMode.Solid
             self._log_solids(f"world/place/{group}", [s for f in fixtures for s in fixture_solids(f)], fill)
         self._log_solids("world/robot/body", urdf_solids(URDF), FillMode.Solid)
-        # The colour camera's picture hangs nearer: it covers the middle of the thermal one.
+        # The image plane of the colour camera is nearer: it covers the middle of the thermal one.
         on_thermal = tuple(layer for layer in LAYERS if not layer.startswith("explained"))
         own = {"thermal": (on_thermal, 1.4), "colour": (ON_COLOUR, 0.8)}
         for name, camera in config.robot.cameras.items():
@@ -246,13 +246,13 @@ class Still:
         self._log_people([person.name for person in config.people])
 
     def log_track(self, number: int, kinds: Sequence[str] = ("confidence", "offset")) -> None:
-        """Name the curves of a track, of some kinds."""
+        """Log the names and colours of a track's curves, by kind."""
         line = rr.SeriesLines(names=[f"track {number}"], colors=[track_colour(number)])
         for kind in kinds:
             self._log(f"curves/{kind}/track_{number}", line)
 
     def _log_moved(self, fixtures: Sequence[Fixture]) -> None:
-        """Log things that are moved, each in its own frame, which goes with it."""
+        """Log objects that are moved, each in its own moving frame."""
         own: dict[str, list[Solid]] = {}
         for fixture in fixtures:
             here = replace(fixture, position=(0.0, 0.0, 0.0), orientation=UPRIGHT)
@@ -288,7 +288,7 @@ class Still:
 
 
 def _picture(config: CameraConfig, packing: str) -> rr.AsComponents:
-    """Return how images of a camera are packed, and coloured if they are of depth [mm]."""
+    """Return the encoding of a camera's images, and the colour map of depth images [mm]."""
     if not isinstance(config, DepthConfig):
         return rr.EncodedImage.from_fields(media_type=packing)
     reach_mm = 1000.0 * np.array([config.nearest_m, config.farthest_m])
@@ -298,7 +298,7 @@ def _picture(config: CameraConfig, packing: str) -> rr.AsComponents:
 
 
 def _pinhole(camera: Pinhole, reach_m: float) -> rr.Pinhole:
-    """Let the picture of a camera hang so far before it."""
+    """Set the distance of a camera's image plane."""
     u, v = camera.centre_px
     return rr.Pinhole(
         focal_length=camera.focal_px,
@@ -310,7 +310,7 @@ def _pinhole(camera: Pinhole, reach_m: float) -> rr.Pinhole:
 
 
 def _shape(kind: ShapeKind, solids: Sequence[Solid], fill: FillMode) -> rr.AsComponents:
-    """Turn solids of one kind into rerun's."""
+    """Convert solids of one kind to a rerun archetype."""
     size = np.array([solid.size for solid in solids])
     common: Any = {
         "centers": [solid.position for solid in solids],

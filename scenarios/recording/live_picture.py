@@ -1,4 +1,4 @@
-"""Pictures shown in rerun's viewer as they are made, and nowhere kept."""
+"""Show pictures in rerun's viewer while they are made, without storing them."""
 
 import uuid
 import weakref
@@ -13,18 +13,18 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.recording.rows import APPLICATION
 from peopleboy.scenarios.recording.viewer import live_viewer
 
-_QUALITY = 75  # of JPEG
+_QUALITY = 75  # JPEG quality
 _SCENE, _REWARD, _EPISODES = "scene", "reward", "episodes"
 
 
 class LivePicture:
     """A viewer that shows an environment: a window, or a page if there is no screen.
 
-    It goes when it is closed, or with the program. Time goes on from one episode to the next, so that earlier
-    ones can be gone back to.
+    The viewer ends when it is closed, or with the program. Time continues from one episode to the next, so
+    that you can go back to earlier ones.
 
     Args:
-        say: receives the page's address.
+        say: called with the page's address.
 
     Raises:
         BadInput: the viewer fails.
@@ -41,19 +41,19 @@ class LivePicture:
             self._end = weakref.finalize(self, stack.pop_all().close)
 
     def begin(self, picture: NDArray[np.uint8], words: str) -> None:
-        """Show an episode's first picture, (H, W, 3), and say which it is."""
+        """Show an episode's first picture, (H, W, 3), and its number."""
         self._earned = 0.0
         self._show(picture)
         self._stream.log(_EPISODES, rr.TextLog(words))
 
     def go_on(self, picture: NDArray[np.uint8], reward: float, dt_s: float) -> None:
-        """Show the next picture, (H, W, 3), with what was earned since the last one, dt_s before it [s]."""
+        """Show the next picture, (H, W, 3), dt_s [s] after the last one, with the reward since then."""
         self._time_s += dt_s
         self._earned += reward
         self._show(picture)
 
     def close(self) -> None:
-        """End the viewer; again is nothing."""
+        """Close the viewer; further calls do nothing."""
         self._end()
 
     def _show(self, picture: NDArray[np.uint8]) -> None:

@@ -1,6 +1,6 @@
-"""What one tick puts on images, into the world and on plots, as plain arrays.
+"""Convert one tick to marks on images, in the world and on plots, as plain arrays.
 
-Pixels are those of the camera's image: the centre of the top-left one is (0, 0).
+Pixels are those of the camera's image: the centre of the top-left pixel is (0, 0).
 """
 
 import math
@@ -23,8 +23,8 @@ from peopleboy.tracker.track import Box, Status, Track
 
 PARTICLES_A_FILTER = 50
 PARTICLES_AT_MOST = 100
-FLAT_M = 0.01  # height of what lies on the floor
-CHI_95 = 2.4477  # root of the 95 % quantile of chi squared with two degrees of freedom
+FLAT_M = 0.01  # height at which marks on the floor are drawn
+CHI_95 = 2.4477  # square root of the 95 % quantile of chi-squared with two degrees of freedom
 
 Floats = NDArray[np.float32]
 Colours = NDArray[np.uint8]
@@ -91,9 +91,9 @@ class Ellipses:
 
 
 def places(tracks: Iterable[Track], sightings: Mapping[int, Sequence[str]]) -> Ellipses:
-    """Return where tracks stand on the floor, as ellipses that hold 95 % of what their covariance allows.
+    """Return the 95 % covariance ellipses of tracks on the floor.
 
-    Their labels tell in which cameras they are seen, as `Sightings` found.
+    Their labels name the cameras that see them, from `Sightings`.
     """
     placed = [(track, track.place) for track in tracks if track.place is not None]
     centre = [(*place.position_m, FLAT_M) for _, place in placed]
@@ -116,7 +116,7 @@ def _ellipse(xx: float, xy: float, yy: float) -> tuple[tuple[float, ...], tuple[
 
 
 def track_boxes(tracks: Sequence[Track], camera: str = THERMAL, affine: Matrix | None = None) -> Boxes:
-    """Return the boxes of tracks in a camera's image, mapped to another's if (2, 3) `affine` says how."""
+    """Return the boxes of tracks in a camera's image, mapped to another one by a (2, 3) affine if given."""
     placed = [track for track in tracks if camera in track.boxes]
     own = [track.boxes[camera] for track in placed]
     boxes = own if affine is None else [map_box(box, affine) for box in own]
@@ -129,7 +129,7 @@ _STANDINGS = {Status.TENTATIVE: "doubtful", Status.PARTLY_OCCLUDED: "", Status.T
 
 
 def track_label(track: Track) -> str:
-    """Say the id, and what there is more to it than being tracked, such as "3 hidden behind 1"."""
+    """Return the label of a track: its id, and any state other than tracked, as "3 hidden behind 1"."""
     standing = _STANDINGS.get(track.status, "")
     behind = "" if track.occluder is None else f"behind {track.occluder}"
     return " ".join(word for word in (str(track.id), standing, behind) if word)
@@ -146,9 +146,9 @@ def truth_boxes(people: Iterable[PersonTruth]) -> Boxes:
 
 
 def particle_points(particles: Mapping[int, Particles]) -> Points:
-    """Choose particles of each filter to show: the strongest half, and the rest evenly from all others.
+    """Choose particles of each filter to show: one half by weight, the other evenly from the rest.
 
-    They have the colour of their track, white for the detector's (id 0), darker the weaker they are.
+    They have the colour of their track, white for the detector's (id 0); the lower the weight, the darker.
     """
     if not particles:
         return Points(np.zeros((0, 2), np.float32), np.zeros((0, 3), np.uint8))
@@ -168,27 +168,27 @@ def _sample(cloud: Particles, number: int, count: int) -> Points:
 
 
 class Sightings:
-    """Keeps in which cameras' newest images the tracker has whom."""
+    """Keeps which tracks have a box in the newest image of each camera."""
 
     def __init__(self, cameras: Sequence[str]) -> None:
         self._cameras = cameras
         self._seen: dict[int, set[str]] = {}
 
     def update(self, tick: Tick) -> Mapping[int, Sequence[str]]:
-        """Return the cameras by track; of one that takes no image at this tick its last image counts."""
+        """Return the cameras by track; a camera without an image at this tick counts by its last image."""
         older = {*self._cameras} - {*tick.observation.images}
         self._seen = {t.id: {*t.boxes} | (older & self._seen.get(t.id, set())) for t in tick.tracks}
         return {number: [c for c in self._cameras if c in seen] for number, seen in self._seen.items()}
 
 
 class Trails:
-    """Turns places frame by frame into the pieces of the trails that lead to them."""
+    """Converts positions, frame by frame, to segments of trails."""
 
     def __init__(self) -> None:
         self._last: dict[int, tuple[float, float]] = {}
 
     def update(self, tick: Tick) -> Lines:
-        """Give the pieces (2, 3) [m] since the last tick: the robot's, and of all who were and are there."""
+        """Return the segments (2, 3) [m] since the last tick: of the robot, and of people present at both."""
         robot = tick.truth.robot
         places = {0: (robot.x, robot.y)} | {p.id: p.position_m for p in tick.truth.people}
         moved = [number for number in places if number in self._last]
@@ -198,13 +198,13 @@ class Trails:
 
 
 def visible_fractions(tick: Tick, names: Iterable[str]) -> list[float]:
-    """Return each person's visible fraction in the order of names; who is not there is not visible."""
+    """Return each person's visible fraction in the order of names; 0 for people who are absent."""
     visible = {person.name: person.visible_fraction for person in tick.truth.people}
     return [visible.get(name, 0.0) for name in names]
 
 
 def box_offset(box: Box, width_px: int) -> float:
-    """Return how far the middle of a box lies right of the thermal image's [half image widths]."""
+    """Return how far the middle of a box is right of the thermal image's centre [half image widths]."""
     return image_shares(box, width_px, 1).x
 
 
@@ -213,7 +213,7 @@ def _boxes(boxes: Sequence[tuple[float, float, float, float]]) -> Floats:
 
 
 def lines_of(lines: Sequence[NDArray[np.float64]], size: int) -> Floats:
-    """Stack K lines of n points of 2 or 3 numbers; none are lines of 2 points."""
+    """Stack K lines of n points with 2 or 3 coordinates; without any, return (0, 2, dimension)."""
     return np.array(lines, np.float32) if lines else np.zeros((0, 2, size), np.float32)
 
 
@@ -222,7 +222,7 @@ def colours_of(colours: Iterable[Rgb]) -> Colours:
     return np.reshape(np.array(list(colours), np.uint8), (-1, 3))
 
 
-LEAST_SHARE = 0.02  # of a silhouette, from which being hidden is worth an arrow
+LEAST_SHARE = 0.02  # occluded share of a silhouette from which an arrow is drawn
 _CHEST, _HEAD = 0.3, 0.08  # where arrows on images start and end, in box heights below the top
 _HEIGHT_M = 1.3  # where arrows in the world are
 
@@ -245,7 +245,7 @@ class Arrows:
 
 
 def true_arrows(people: Sequence[PersonTruth]) -> Arrows:
-    """Draw on the thermal image which person hides which share of whom."""
+    """Return arrows on the thermal image from occluder to occluded person, with the occluded share."""
     pairs = [
         (_point(front.box, _CHEST), _point(behind.box, _HEAD), TRUTH, f"{share:.0%}")
         for front, behind, share in _hiding(people)
@@ -255,7 +255,7 @@ def true_arrows(people: Sequence[PersonTruth]) -> Arrows:
 
 
 def world_arrows(people: Sequence[PersonTruth]) -> Arrows:
-    """Draw the same in the world."""
+    """Return arrows in the world from occluder to occluded person."""
     pairs = [
         ((*front.position_m, _HEIGHT_M), (*behind.position_m, _HEIGHT_M), TRUTH, f"{share:.0%}")
         for front, behind, share in _hiding(people)
@@ -264,7 +264,7 @@ def world_arrows(people: Sequence[PersonTruth]) -> Arrows:
 
 
 def believed_arrows(tracks: Iterable[Track]) -> Arrows:
-    """Draw on the thermal image whom the tracker takes to be in front of whom, in the front one's colour."""
+    """Return arrows on the thermal image from occluding to occluded track, in the occluder's colour."""
     known = {track.id: (track, track.boxes[THERMAL]) for track in tracks if THERMAL in track.boxes}
     pairs = [
         (_point(known[front][1], _CHEST), _point(box, _HEAD), track_colour(front), str(behind.status))
@@ -275,7 +275,7 @@ def believed_arrows(tracks: Iterable[Track]) -> Arrows:
 
 
 def _hiding(people: Sequence[PersonTruth]) -> Iterator[tuple[PersonTruth, PersonTruth, float]]:
-    """Yield who is in front, who is behind, and the share that is hidden."""
+    """Yield the occluder, the occluded person, and the occluded share."""
     known = {person.name: person for person in people}
     for behind in people:
         for name, share in behind.hidden_by.items():

@@ -1,4 +1,4 @@
-"""Write a run as a rerun recording, tick by tick; `entities` lists its contents."""
+"""Write a run as a rerun recording, tick by tick; `layout` lists its entities."""
 
 import math
 from collections.abc import Collection, Sequence
@@ -48,26 +48,26 @@ from peopleboy.sim.world_config import WorldConfig
 
 _FRAMES_SENT_TOGETHER = 15
 _JPEG_QUALITY = 45
-_POINTS = 10_000  # about, of a depth image
+_POINTS = 10_000  # approximate number of points in the cloud of a depth image
 _NAME_HEIGHT = 1.0 / 15.0  # [image heights] of names above boxes
-_GONE = 1e-4  # of its size is what is not there
+_GONE = 1e-4  # scale at which an absent object is drawn
 _GRAVE = ("contact", "lost", "fault starts")
 
 
 class Recorder(RecordingWriter):
-    """Write the recording of a run as it goes; use it as a context manager.
+    """Writes the recording of a run while it is running; use it as a context manager.
 
-    Every 15 frames everything since the last time goes to the file, so that a run that is killed leaves a
-    file that opens and lacks those frames at most.
+    The file is written every 15 frames, so that a killed run leaves a file that opens, and lacks at most
+    these frames.
 
     Args:
         path: the file to write.
-        config: the world that is recorded.
+        config: configuration of the world.
         title: name of the recording; the same title gives the same recording id.
-        viewer: address of a viewer that is to show it at once; None for none.
-        watched: cameras that the tracker asks for.
-        attends: whether it explains where in colour images it looks for a person.
-        is_lossless: whether images are kept as they are, not as JPEG.
+        viewer: address of a viewer that shows it live; None for none.
+        watched: cameras that the tracker uses.
+        attends: whether the tracker explains its search for a person in colour images.
+        is_lossless: whether images are kept lossless, not as JPEG.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class Recorder(RecordingWriter):
         self._still.log_world(config)
 
     def log(self, tick: Tick, events: Sequence[LogLine]) -> None:
-        """Add one tick and what happened at it."""
+        """Add one tick and its events."""
         self.begin(tick.frame, tick.observation.time_s)
         self._log_images(tick)
         self._log_tracks(tick)
@@ -133,7 +133,7 @@ class Recorder(RecordingWriter):
         return encode_jpeg(image, _JPEG_QUALITY, has_own_codes=False)
 
     def _log_depth(self, name: str, config: DepthConfig, tick: Tick) -> None:
-        """Log a depth image without loss, and the points that it stands for where they are in the world."""
+        """Log a depth image without loss, and its point cloud in the world."""
         images = tick.observation.images
         self.add(f"{camera_path(name)}/image", rr.EncodedDepthImage, blob=[encode_png(images[name])])
         colour = images[f"{name}_colour"] if config.colour else shown_to_people(images, name, config)
@@ -182,7 +182,7 @@ class Recorder(RecordingWriter):
             self.add(f"{THERMAL}/{layer}", rr.Points2D, positions=place, colors=colour)
 
     def _log_sketches(self, tick: Tick) -> None:
-        """Log what the tracker explains of further cameras' new images, and the empty scenes that are new."""
+        """Log the tracker's explanation of further cameras' new images, and backgrounds that have changed."""
         sketches = draw_explained_sketches(tick.explanation, tick.tracks, self._cameras)
         for camera, sketch in ((c, s) for c, s in sketches.items() if c in tick.observation.images):
             path = camera_path(camera)
@@ -205,7 +205,7 @@ class Recorder(RecordingWriter):
         path, lift_px = camera_path(camera), _NAME_HEIGHT * self._cameras[camera].camera.height
         self._log_boxes(f"{path}/truth/boxes", boxes)
         above = _from_corner(boxes.box[:, :2]) + boxes.box[:, 2:] * (0.5, 0.0) - (0.0, lift_px)
-        # A panorama shows few heads.
+        # Panoramas often cut off heads: their names move down to the top border.
         above[:, 1] = np.maximum(above[:, 1], 0.0)
         self.add(f"{path}/truth/names", rr.Points2D, positions=above, colors=boxes.colour, labels=boxes.label)
 
@@ -229,7 +229,7 @@ class Recorder(RecordingWriter):
             self._log_person(person_path(name), joints.get(name))
 
     def _log_thing(self, thing: ThingTruth) -> None:
-        """Log where a thing is, if that is new; what is not there is too small to be seen."""
+        """Log the pose of an object if it has changed; an absent object is scaled to an invisible size."""
         place = (thing.position_m, thing.heading_rad, thing.is_there)
         if self._things.get(thing.name) == place:
             return
@@ -262,7 +262,7 @@ class Recorder(RecordingWriter):
                 self._tracks_named.add(track.id)
                 self._still.log_track(track.id)
             curves[f"curves/confidence/track_{track.id}"] = [track.confidence]
-            box = track.boxes.get("thermal")  # a number that is none interrupts the line
+            box = track.boxes.get("thermal")  # NaN interrupts the line
             offset = math.nan if box is None else marks.box_offset(box, self._width)
             curves[f"curves/offset/track_{track.id}"] = [offset]
         for number, likeness in likeness_by_track(tick.explanation).items():
@@ -275,7 +275,7 @@ class Recorder(RecordingWriter):
 
 
 def _from_corner(pixels: NDArray[np.floating]) -> NDArray[np.float32]:
-    """Count pixels from the corner of the image, as rerun does, not from the middle of the first one."""
+    """Convert pixels to rerun's convention: counted from the image's corner, not the first pixel's centre."""
     return rounded(pixels, PIXEL_STEP) + np.float32(0.5)
 
 

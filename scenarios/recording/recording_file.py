@@ -20,7 +20,7 @@ from peopleboy.scenarios.run_folder.finished_run import runs_in
 
 MISSING = "needs rerun: pip install 'peopleboy[viewer]'"
 
-# What a file of rerun's begins with, and what ends one that was closed.
+# First bytes of a rerun file, and the last bytes of one that was closed.
 _HEAD, _FOOT, _FOOT_BYTES = b"RRF2", b"RRF2FOOT", 12
 
 
@@ -30,10 +30,10 @@ def is_installed() -> bool:
 
 
 def check_installed(what: str) -> None:
-    """Refuse what needs rerun where it is not installed.
+    """Raise an error if rerun is not installed.
 
     Args:
-        what: needs it, such as an option.
+        what: the option or feature that needs rerun.
 
     Raises:
         BadInput: rerun is not installed.
@@ -43,7 +43,7 @@ def check_installed(what: str) -> None:
 
 
 def is_recorded(is_wanted: bool) -> bool:
-    """Return whether a recording is written: if it is wanted and rerun is installed; log a notice if not."""
+    """Return whether a recording is requested and rerun is installed; log a notice if it is missing."""
     if is_wanted and not is_installed():
         _note_once(f"no recording is written: {MISSING}")
         return False
@@ -56,10 +56,10 @@ def _note_once(notice: str) -> None:
 
 
 def recording_in(folder: Path) -> Path:
-    """Find the recording of a run, of one that was cut off too.
+    """Find the recording of a run, also of an interrupted one.
 
     Raises:
-        BadInput: there is no such folder, it holds no run or several, or no recording of rerun's.
+        BadInput: the folder is missing, holds no run or several, or no rerun recording.
     """
     inner = runs_in(folder)
     if inner != [folder]:
@@ -72,12 +72,12 @@ def recording_in(folder: Path) -> Path:
 
 
 def layers_in(folder: Path) -> list[Path]:
-    """List what lies over the recording of a run: what a scene model believes."""
+    """List the recordings that overlay that of a run: those of a scene model."""
     return sorted(folder.glob("scene/scene.rrd"))
 
 
 def is_whole(recording: Path) -> bool:
-    """Return whether a recording was closed; one that was cut off opens too, and lacks its end."""
+    """Return whether a recording was closed; an interrupted one opens too, but lacks its end."""
     with recording.open("rb") as file:
         file.seek(-min(_FOOT_BYTES, recording.stat().st_size), os.SEEK_END)
         return _FOOT in file.read()
@@ -99,12 +99,11 @@ _ONLY_ERRORS = {"RUST_LOG": "error"}
 
 
 def pack(path: Path) -> None:
-    """Join the pieces of a recording, as they came second by second, which takes a sixth off its size.
+    """Merge the chunks of a recording, which were written second by second; this saves a sixth of its size.
 
-    There is always a complete file: the new one takes its place at the end, or not at all if rerun's program
-    fails.
+    The file is replaced only when the new one is complete, and not at all if rerun's program fails.
     """
-    # Rerun's program takes it for no failure if it can make nothing of its input, and then leaves nothing.
+    # Rerun's program exits with 0 if it cannot read its input, and then writes no file.
     with atomic(path) as packed:
         command = [sys.executable, "-m", "rerun_cli", "rrd", "optimize", str(path), "--output", str(packed)]
         done = subprocess.run(
@@ -116,9 +115,9 @@ def pack(path: Path) -> None:
 
 
 def recorded_images(recording: Path, camera: str, frames: Collection[int]) -> dict[int, NDArray[np.uint8]]:
-    """Read a camera's images, grey or RGB, at some frames (from 1), with what JPEG has lost of them.
+    """Read a camera's images, grey or RGB, at some frames (from 1), with JPEG artefacts.
 
-    Frames at which there is none are left out; so are all of a file that is not whole or cannot be read.
+    Frames without an image are omitted, and all frames of a file that is incomplete or unreadable.
     """
     if not is_installed():
         return {}

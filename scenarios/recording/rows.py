@@ -1,4 +1,4 @@
-"""Write a recording frame by frame, with rounded numbers, and send its rows column by column."""
+"""Write a recording frame by frame, with rounded numbers, and send its rows as columns."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,20 +16,20 @@ APPLICATION: Final = "peopleboy"
 
 
 def recording_id(title: str) -> str:
-    """Return the id of a recording by its title; viewers take recordings of one id together."""
+    """Return the id of a recording from its title; viewers merge recordings with the same id."""
     return title.replace(", ", "-").replace(" ", "-")
 
 
 class RecordingWriter:
-    """Write a recording; use it as a context manager. A file that is closed is packed.
+    """Writes a recording; use it as a context manager. Closing the file packs it.
 
-    Rows are collected frame by frame and sent column by column, which costs a tenth of sending them one by
-    one.
+    Rows are collected frame by frame and sent as columns, which takes a tenth of the time of sending single
+    rows.
 
     Args:
         path: the file to write.
         title: name of the recording; the same title gives the same recording id.
-        viewer: address of a viewer that shows it at once; None for none.
+        viewer: address of a viewer that shows it live; None for none.
         blueprint: layout of its views.
     """
 
@@ -53,22 +53,22 @@ class RecordingWriter:
         self.close()
 
     def close(self) -> None:
-        """Write what is left, close the file, and pack it."""
+        """Write the remaining rows, close the file, and pack it."""
         self._send()
         self.stream.disconnect()
         pack(self._path)
 
     def begin(self, frame: int, time_s: float) -> None:
-        """Date the rows to come."""
+        """Set the time of the rows that follow."""
         self._now = (frame, time_s)
         self._frames += 1
 
     def add(self, path: str, kind: Any, **values: Any) -> None:
-        """Add a row to an entity: under every name the same number of values, perhaps none."""
+        """Add a row to an entity; every name has the same number of values, which may be 0."""
         self._rows.setdefault((path, kind), []).append((self._now, values))
 
     def send_if_due(self, frames: int) -> None:
-        """Send all rows if they are those of so many frames."""
+        """Send all rows if this many frames have been collected."""
         if self._frames >= frames:
             self._send()
 
@@ -85,21 +85,21 @@ class RecordingWriter:
 
 def _joined(rows: Sequence[Any]) -> Any:
     if isinstance(rows[0], np.ndarray):
-        # Of nothing there may be a shape that does not fit.
+        # An empty array may have a shape that does not match.
         return np.concatenate([row for row in rows if len(row)] or rows[:1])
     return [value for row in rows for value in row]
 
 
-# Rounding to short binary fractions, finer than a screen shows, halves the bytes of a body: LZ4, by which
-# rerun packs, finds only bytes that repeat, and the last digits of measured numbers never do.
-# Powers of two: other steps leave long binary fractions.
+# Rounding to short binary fractions, finer than the screen resolution, halves the size of a body: LZ4, which
+# rerun uses, compresses repeated bytes only, and the last digits of measured numbers never repeat.
+# Powers of two, as other steps have long binary fractions.
 PIXEL_STEP: Final = 1 / 4
 METRE_STEP: Final = 1 / 128
-TURN_STEP: Final = 1 / 128  # of a quaternion's parts: within half a degree
+TURN_STEP: Final = 1 / 128  # of a quaternion's components: within half a degree
 
 
 def rounded(values: NDArray[np.floating], step: float) -> NDArray[np.float32]:
     """Round values of any shape to multiples of a step, which is a power of two."""
-    # Adding zero makes -0 into 0, whose bytes differ.
+    # Adding zero turns -0 into 0, which has other bytes.
     short: NDArray[np.float32] = (np.rint(values / step) * step + 0.0).astype(np.float32)
     return short

@@ -1,4 +1,4 @@
-"""A recording of what a scene model believes, which lies over that of the run."""
+"""Write a scene model's estimate as a recording that overlays that of the run."""
 
 import math
 from collections.abc import Sequence
@@ -19,16 +19,16 @@ from peopleboy.tracker.scene_model.vista_spaces import Surface
 _SCENE = "world/scene"
 _GREY = (170, 170, 170)
 _POINT_M = 0.015
-_MOST = 4000  # points of things in a frame
+_MOST = 4000  # most points of objects in a frame
 
 
 class SceneRecording(RecordingWriter):
-    """Write static map, things and people where they are in the world; use it as a context manager.
+    """Writes static map, objects and people in world coordinates; use it as a context manager.
 
     Args:
         path: the file to write.
-        title: of the run's recording, into which viewers put this one.
-        first: where the robot stood first, in the world.
+        title: title of the run's recording, with which viewers merge this one.
+        first: initial pose of the robot in the world.
     """
 
     def __init__(self, path: Path, title: str, first: Pose2) -> None:
@@ -36,7 +36,7 @@ class SceneRecording(RecordingWriter):
         self._pose = first
 
     def log(self, frame: int, scene: VistaScene, depth_m: Metres, geometry: Geometry, pose: Pose2) -> None:
-        """Add a frame: its things as points in their colours, its people as columns, and what happened."""
+        """Add a frame: objects as coloured points, people as ellipsoids."""
         self.begin(frame, scene.time_s)
         points, colours = _coloured(scene, depth_m, geometry)
         world = self._pose.compose(pose).transform_points(points).astype(np.float32)
@@ -54,21 +54,21 @@ class SceneRecording(RecordingWriter):
         )
 
     def log_events(self, lines: Sequence[tuple[float, str]]) -> None:
-        """Add what happened, at the times [s] when it was reported."""
+        """Add events at the times [s] when they were reported."""
         for time_s, line in lines:
             self.stream.set_time("time", duration=time_s)
             self.stream.log("events", rr.TextLog(line, level="INFO"), strict=True)
         self.stream.reset_time()
 
     def log_map(self, surface: Surface) -> None:
-        """Add what stands."""
+        """Add the static map."""
         world = self._pose.transform_points(surface.points_m)
         points = rr.Points3D(world, colors=_GREY, radii=_POINT_M)
         self.stream.log(f"{_SCENE}/static", points, static=True, strict=True)
 
 
 def _coloured(scene: VistaScene, depth_m: Metres, geometry: Geometry) -> tuple[Floats, Colours]:
-    """Return the points (N, 3) of all things in the robot's frame, and their colours (N, 3)."""
+    """Return the points (N, 3) of all objects in the robot's frame, and their colours (N, 3)."""
     pixels = np.flatnonzero((scene.things > 0) & (depth_m > 0.0))
     pixels = pixels[:: max(math.ceil(len(pixels) / _MOST), 1)]
     numbers = scene.things.ravel()[pixels].tolist()

@@ -1,4 +1,4 @@
-"""Turn places, the robot and people into simple solids to draw."""
+"""Convert places, the robot and people to simple solids for drawing."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class Solid:
     Attributes:
         kind: BOX, CYLINDER or SPHERE, with sizes as in `Shape`.
         size: [m].
-        position, orientation: in the frame that the solid is drawn in; x, y, z, w.
+        position, orientation: in the frame of the drawing; quaternions are x, y, z, w.
         colour: sRGB.
     """
 
@@ -37,7 +37,7 @@ class Solid:
 
 
 def group_fixtures(fixtures: Iterable[Fixture]) -> dict[str, list[Fixture]]:
-    """Sort fixtures into floor, ceiling, walls and things, which are shown or hidden together."""
+    """Group fixtures into floor, ceiling, walls and objects, each shown or hidden as a whole."""
     groups: dict[str, list[Fixture]] = {}
     for fixture in fixtures:
         kind = fixture.name.replace("/", "_").split("_")[0]
@@ -47,7 +47,7 @@ def group_fixtures(fixtures: Iterable[Fixture]) -> dict[str, list[Fixture]]:
 
 
 def fixture_solids(fixture: Fixture) -> Iterator[Solid]:
-    """Return a fixture's solids in the world frame; a URDF and a mesh become the boxes around them."""
+    """Return a fixture's solids in the world frame; a URDF or mesh is replaced by its bounding boxes."""
     if fixture.part is None:
         (low, high), material = fixture_extent(fixture), fixture.material
         yield _box((low + high) / 2.0, high - low, _srgb(material))
@@ -67,7 +67,7 @@ def fixture_solids(fixture: Fixture) -> Iterator[Solid]:
 
 
 def urdf_solids(path: Path) -> list[Solid]:
-    """Return what is to be seen of a URDF, in the frame of its root link, all joints at zero."""
+    """Return the visual solids of a URDF in the frame of its root link, with all joints at zero."""
     return [
         Solid(
             kind=kind,
@@ -82,7 +82,7 @@ def urdf_solids(path: Path) -> list[Solid]:
 
 
 def _simplify(shape: Shape) -> tuple[ShapeKind, Vector, Vector]:
-    """Make a mesh a box, a capsule a cylinder: give kind, size and position in the part's frame."""
+    """Return kind, size and position in the part's frame; a mesh becomes a box, a capsule a cylinder."""
     if shape.kind is ShapeKind.CAPSULE:
         length, radius, _ = shape.size
         return ShapeKind.CYLINDER, (length + 2.0 * radius, radius, 0.0), shape.position
@@ -100,7 +100,7 @@ def _box(centre: np.ndarray, size: np.ndarray, colour: Rgb) -> Solid:
 
 
 def _srgb(material: Material | None) -> Rgb:
-    """Encode a look's linear reflectance for the screen."""
+    """Convert linear reflectance to sRGB."""
     red, green, blue = (0.5, 0.5, 0.5) if material is None else material.rgb
     return _bytes((red ** (1 / 2.2), green ** (1 / 2.2), blue ** (1 / 2.2)))
 
@@ -126,7 +126,7 @@ Floats = NDArray[np.float64]
 _EARS, _SHOULDERS, _ELBOWS, _WRISTS = (3, 4), (5, 6), (7, 8), (9, 10)
 _HIPS, _KNEES, _ANKLES = (11, 12), (13, 14), (15, 16)
 
-# Radii in shares of the height from ankles to ears: the look of a person, not anybody's measures.
+# Radii in shares of the height from ankles to ears: typical proportions, not those of the simulated body.
 _LIMBS: Final[tuple[tuple[tuple[int, int], tuple[int, int], float], ...]] = (
     (_SHOULDERS, _ELBOWS, 0.033),
     (_ELBOWS, _WRISTS, 0.025),
@@ -141,7 +141,7 @@ _HEAD_RADIUS: Final = 0.058
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Capsules:
-    """K capsules: from a cap's centre along their own z axis to the other's.
+    """K capsules, each along its own z axis from the centre of one cap to that of the other.
 
     Attributes:
         start: (K, 3) [m] world frame.
@@ -187,7 +187,7 @@ def body_capsules(joints: Floats) -> Capsules:
 
 
 def turn_z_to(axis: Floats) -> Floats:
-    """Find the shortest turns (K, 4) x, y, z, w from z to axes (K, 3); none for an axis of length 0."""
+    """Return the shortest rotations (K, 4) x, y, z, w from z to axes (K, 3); identity for length 0."""
     length = np.linalg.norm(axis, axis=1, keepdims=True)
     x, y, z = (axis / np.where(length > 0.0, length, 1.0)).T
     z = np.where(length[:, 0] > 0.0, z, 1.0)
@@ -198,6 +198,6 @@ def turn_z_to(axis: Floats) -> Floats:
 
 
 def _size(joints: Floats) -> float:
-    """The height [m] that the person would have standing: legs, trunk and neck as far as the ears."""
+    """Return the standing height [m] of a person up to the ears: legs, trunk and neck."""
     chain = [joints[list(pair)].mean(axis=0) for pair in (_ANKLES, _KNEES, _HIPS, _SHOULDERS, _EARS)]
     return float(sum(np.linalg.norm(b - a) for a, b in pairwise(chain)))

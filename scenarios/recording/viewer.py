@@ -1,7 +1,7 @@
-"""Rerun's viewer: in a window, or as a page that only this machine can open.
+"""Start rerun's viewer: in a window, or as a page that only this machine can open.
 
-What rerun offers to Python, `spawn`, `serve_grpc` and `serve_web_viewer`, listens at every address of the
-machine. An option of its program prevents that.
+Rerun's Python functions `spawn`, `serve_grpc` and `serve_web_viewer` listen at every address of the machine.
+Only its program has an option that prevents this.
 """
 
 import os
@@ -18,28 +18,28 @@ from urllib.parse import quote
 from peopleboy.bad_input import BadInput
 
 LOOPBACK = "127.0.0.1"
-NO_SCREEN = "no screen here: --web serves it to a browser"
+NO_SCREEN = "no display is available; --web serves the recording to a browser"
 
-# `-m rerun_cli` hides how the program ended.
+# `-m rerun_cli` hides the exit code.
 _PROGRAM = "import sys; from rerun_cli.__main__ import main; sys.exit(main())"
-_START_S = 30.0  # within which a viewer is there, or fails
+_START_S = 30.0  # within which a viewer starts, or fails
 _POLL_S = 0.1
-# It prints every step of its work otherwise, and over the network how it is used, unless on a build machine.
+# Otherwise it logs every step, and sends usage statistics over the network unless it runs on a build machine.
 _QUIET = {"RUST_LOG": "error", "CI": "true"}
 
 
 def has_screen() -> bool:
-    """Return whether there is a screen to open a window on."""
+    """Return whether there is a display to open a window on."""
     if sys.platform in ("win32", "darwin"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def open_viewer(recordings: Sequence[Path]) -> None:
-    """Show a recording, and what lies over it, in a window, and wait until it is closed.
+    """Show a recording and its overlays in a window, and wait until it is closed.
 
     Raises:
-        BadInput: there is no screen, or the viewer fails.
+        BadInput: there is no display, or the viewer fails.
     """
     if not has_screen():
         raise BadInput(NO_SCREEN)
@@ -49,15 +49,15 @@ def open_viewer(recordings: Sequence[Path]) -> None:
 
 
 def serve(recordings: Sequence[Path], say: Callable[[str], None], port: int | None = None) -> None:
-    """Serve a recording, and what lies over it, to browsers of this machine, until interrupted.
+    """Serve a recording and its overlays to browsers of this machine, until interrupted.
 
     Args:
         recordings: the files.
-        say: receives the page's address once it is there.
-        port: of the page; its data comes from the next one. None for any two that are free.
+        say: called with the page's address once it is served.
+        port: port of the page; its data uses the next one. None for any two free ports.
 
     Raises:
-        BadInput: a port is taken, or the server fails.
+        BadInput: a port is in use, or the server fails.
     """
     with _page(port, *map(str, recordings)) as (viewer, address, _):
         say(address)
@@ -66,10 +66,10 @@ def serve(recordings: Sequence[Path], say: Callable[[str], None], port: int | No
 
 @contextmanager
 def live_viewer(say: Callable[[str], None], *, is_left_open: bool = True) -> Iterator[str]:
-    """Have a viewer ready: a window, or a page if there is no screen; yield where it takes data.
+    """Start a viewer, a window or, without a display, a page; yield the address that accepts data.
 
     Args:
-        say: receives where to look.
+        say: called with the address of the page.
         is_left_open: whether a window stays open afterwards, and a page is served until interrupted.
 
     Raises:
@@ -91,7 +91,7 @@ def live_viewer(say: Callable[[str], None], *, is_left_open: bool = True) -> Ite
 
 @contextmanager
 def _page(first: int | None, *recordings: str) -> Iterator[tuple[subprocess.Popen[bytes], str, str]]:
-    """Serve the viewer as a page; yield its process, the page's address, and where it takes data."""
+    """Serve the viewer as a page; yield its process, the page's address, and the address for data."""
     web, data = _ports(first)
     ports = ("--port", str(data), "--web-viewer-port", str(web))
     with _rerun(*recordings, "--serve-web", *ports) as viewer:
@@ -102,9 +102,9 @@ def _page(first: int | None, *recordings: str) -> Iterator[tuple[subprocess.Pope
 
 @contextmanager
 def _rerun(*arguments: str, is_left_open: bool = False) -> Iterator[subprocess.Popen[bytes]]:
-    """Start rerun's program, for this machine alone; end it afterwards, unless it is left open."""
+    """Start rerun's program for this machine only; stop it afterwards, unless it is left open."""
     command = [sys.executable, "-c", _PROGRAM, "--bind", LOOPBACK, *arguments]
-    # In a session of its own, an interrupt reaches it through us, and all of it can be ended.
+    # In its own session, it receives interrupts only from here, and its whole process group can be stopped.
     viewer = subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL if is_left_open else subprocess.PIPE,
@@ -119,7 +119,7 @@ def _rerun(*arguments: str, is_left_open: bool = False) -> Iterator[subprocess.P
 
 def _end(viewer: subprocess.Popen[bytes]) -> None:
     if hasattr(os, "killpg"):
-        # Its child may outlive it.
+        # Its child process may outlive it.
         with suppress(ProcessLookupError):
             os.killpg(viewer.pid, signal.SIGTERM)
     else:
@@ -128,7 +128,7 @@ def _end(viewer: subprocess.Popen[bytes]) -> None:
 
 
 def _wait(viewer: subprocess.Popen[bytes]) -> None:
-    """Wait until the user has had enough, by Ctrl-C or by ending this process."""
+    """Wait until the user presses Ctrl-C or ends this process."""
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         viewer.wait()
@@ -140,7 +140,7 @@ def _wait(viewer: subprocess.Popen[bytes]) -> None:
 
 
 def _wait_for(port: int, viewer: subprocess.Popen[bytes]) -> None:
-    """Wait until something listens on a port."""
+    """Wait until a process listens on a port."""
     end_s = time.monotonic() + _START_S
     while time.monotonic() < end_s and viewer.poll() is None:
         with socket.socket() as probe:
@@ -151,7 +151,7 @@ def _wait_for(port: int, viewer: subprocess.Popen[bytes]) -> None:
 
 
 def _complaint(viewer: subprocess.Popen[bytes]) -> str:
-    """Say in one line what rerun says last."""
+    """Return the last line of rerun's output."""
     if viewer.poll() is None or viewer.stderr is None:
         return "rerun's viewer does not start"
     lines = viewer.stderr.read().decode(errors="replace").strip().splitlines()
@@ -159,7 +159,7 @@ def _complaint(viewer: subprocess.Popen[bytes]) -> str:
 
 
 def _ports(first: int | None) -> tuple[int, int]:
-    """Return a port and the next, or any two, at which nothing listens."""
+    """Return a port and the next one if both are free, or any two free ports."""
     wanted = (0, 0) if first is None else (first, first + 1)
     with ExitStack() as held:
         try:

@@ -1,1 +1,1 @@
-"""One page about a run, or about several side by side: what went well, what went wrong, and why."""
+"""Report page about one run, or several side by side: results, failures and their causes."""

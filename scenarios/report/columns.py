@@ -1,4 +1,4 @@
-"""What stands side by side on a page: single runs, or many runs taken together."""
+"""Columns of a report page: single runs, or many runs combined."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,19 +15,19 @@ from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
 from peopleboy.wording import counted
 
-MOST_BESIDE = 4  # columns that a table can hold on paper
+MOST_BESIDE = 4  # columns that fit on paper
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Column:
-    """One run, or several that are taken together.
+    """One run, or several runs combined.
 
     Attributes:
-        label: which distinguishes it from the others.
-        runs: at least one.
-        scores: of each run.
-        notes: what whoever reads them must know, of the first run of which there is something; a line each.
-        occlusions: total ones, of each run.
+        label: name that distinguishes it from other columns.
+        runs: at least one run.
+        scores: scores of each run.
+        notes: caveats of the scores, one line each, from the first run that has any.
+        occlusions: full occlusions of each run.
     """
 
     label: str
@@ -38,21 +38,21 @@ class Column:
 
     @property
     def is_single(self) -> bool:
-        """Whether it is one run only."""
+        """Whether the column has a single run."""
         return len(self.runs) == 1
 
     @property
     def found(self) -> RunFindings:
-        """Its first run."""
+        """The first run."""
         return self.runs[0]
 
     @property
     def headline(self) -> str:
-        """What was found, in a sentence."""
+        """Summary of the findings in a sentence."""
         return headline(self.runs)
 
     def by_badness(self) -> list[tuple[RunFindings, Scores]]:
-        """Its runs with their scores: most numbers on another person first, then most lost identities."""
+        """Return runs with scores, the worst first: by numbers on another person, then by lost identities."""
         pairs = zip(self.runs, self.scores, strict=True)
         return sorted(
             pairs, key=lambda pair: (-len(pair[0].transfers), -len(pair[0].lost), pair[1].mot.identity.idf1)
@@ -60,13 +60,13 @@ class Column:
 
 
 def read_columns(paths: Sequence[Path]) -> list[Column]:
-    """Read what stands side by side: each path is a run's folder, or one that holds those of many runs.
+    """Read the columns of a page: each path is the folder of a run, or a folder of many runs.
 
-    More than `MOST_BESIDE` paths are taken together by their trackers.
+    More than `MOST_BESIDE` paths are grouped by tracker.
 
     Raises:
-        BadInput: a folder holds no complete run or is given twice, or there are too many trackers to stand
-            side by side, or runs of one scenario and seed are of different scenes.
+        BadInput: a folder has no complete run or is given twice, there are too many trackers for one page, or
+            runs of the same scenario and seed show different scenes.
     """
     folders = [runs_in(path) for path in paths]
     _refuse_repeats([folder for of_path in folders for folder in of_path])
@@ -77,7 +77,7 @@ def read_columns(paths: Sequence[Path]) -> list[Column]:
             by_tracker.setdefault(run.about.tracker, []).append(run)
         groups = list(by_tracker.values())
     if len(groups) > MOST_BESIDE:
-        raise BadInput(f"report: runs of {len(groups)} trackers; at most {MOST_BESIDE} stand side by side")
+        raise BadInput(f"report: runs of {len(groups)} trackers; at most {MOST_BESIDE} fit side by side")
     check_same_scenes(
         [{run.folder: (run.about.scenario, run.about.seed) for run in group} for group in groups]
     )
@@ -86,27 +86,27 @@ def read_columns(paths: Sequence[Path]) -> list[Column]:
 
 
 def are_same_scene(columns: Sequence[Column]) -> bool:
-    """Return whether all are single runs of one scenario and seed."""
+    """Return whether all columns are single runs of one scenario and seed."""
     titles = {column.found.run.title for column in columns}
     return all(column.is_single for column in columns) and len(titles) == 1
 
 
 def lacking(columns: Sequence[Column]) -> list[str]:
-    """Say, in a line a column, what a page cannot show since a scenario file is missing or spoilt."""
+    """Return a line for each column of which the page lacks content, since a scenario file is unreadable."""
     lines = []
     for column in columns:
         faults = [fault for fault in map(_fault, column.runs) if fault]
         if faults:
             more = f" (and {counted(len(faults) - 1, 'run')} more)" if len(faults) > 1 else ""
             lines.append(
-                f"{faults[0]}{more}; so no plan is drawn and no image rendered again; "
-                "run the scenario again for them"
+                f"{faults[0]}{more}; the plan and images rendered again are missing; "
+                "run the scenario again to get them"
             )
     return lines
 
 
 def _fault(found: RunFindings) -> str:
-    """Why a run's scenario cannot be loaded, in a line; empty if it can."""
+    """Return why a run's scenario cannot be loaded; empty if it can."""
     try:
         _ = found.run.scenario
     except BadInput as error:
@@ -118,7 +118,7 @@ def _refuse_repeats(folders: Sequence[Path]) -> None:
     seen: set[Path] = set()
     for folder in folders:
         if folder.resolve() in seen:
-            raise BadInput(f"{folder}: is given twice; give each run once, or another one to compare with")
+            raise BadInput(f"{folder}: is given twice; give each run once")
         seen.add(folder.resolve())
 
 
@@ -135,7 +135,7 @@ def _column(label: str, runs: Sequence[FinishedRun]) -> Column:
 
 
 def _occlusions(found: RunFindings) -> tuple[Occlusion, ...]:
-    """Score the total occlusions of a run; its truth file has nobody who is outside the image."""
+    """Score the full occlusions of a run; its ground truth file omits people outside the image."""
     truth, tracks = found.boxes
     occluded = {person.id: person.occluded for person in found.people}
     rows = zip(truth.id.tolist(), truth.frame.tolist(), strict=True)
@@ -146,7 +146,7 @@ def _occlusions(found: RunFindings) -> tuple[Occlusion, ...]:
 
 
 def _labels(groups: Sequence[Sequence[FinishedRun]], paths: Sequence[Path]) -> list[str]:
-    """Name columns by the first thing in which they differ: tracker, scenario, folder."""
+    """Label columns by the first property in which they differ: tracker, scenario or folder."""
     choices = [
         [_common([run.about.tracker for run in group]) for group in groups],
         [g[0].title if len(g) == 1 else _common([run.about.scenario for run in g]) for g in groups],

@@ -1,6 +1,6 @@
-"""Put matplotlib's figures into a page as SVG, and write the page in place of nothing but an earlier report.
+"""Embed matplotlib figures in a page as SVG, and write the page; only earlier reports are overwritten.
 
-The SVG has always the same bytes, and no names that could clash.
+The SVG is reproducible byte by byte, and has no ids that could clash.
 """
 
 import base64
@@ -29,7 +29,7 @@ _PER_INCH: Final = 72.0
 _SAYS: Final = "says "
 _NOTHING: Final = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
-# A $ in a name begins no formula.
+# A $ in a name does not start a formula.
 svg_style = matplotlib.rc_context(
     {
         "text.parse_math": False,
@@ -44,18 +44,18 @@ svg_style = matplotlib.rc_context(
         "ytick.labelcolor": INK,
     }
 )
-"""A decorator of functions that draw."""
+"""Decorator that sets the style of drawing functions."""
 
 
 def new_figure(width_pt: float, height_pt: float) -> Figure:
-    """Make an empty figure without paper."""
+    """Return an empty figure with a transparent background."""
     figure = Figure((width_pt / _PER_INCH, height_pt / _PER_INCH), facecolor="none")
     FigureCanvasSVG(figure)
     return figure
 
 
 def set_tooltip(artist: Artist, words: str) -> None:
-    """Let an artist say something when it is pointed at."""
+    """Set the tooltip of an artist."""
     artist.set_gid(_SAYS + words)
 
 
@@ -63,12 +63,12 @@ def inline(figure: Figure, name: str, words: str = "") -> Markup:
     """Return a figure as an element of a page.
 
     Args:
-        figure: what to show.
-        name: of the figure, another one for each on a page.
-        words: the same for those who do not see it; an ornament has none.
+        figure: the figure to embed.
+        name: name of the figure, unique on a page.
+        words: text alternative; empty for a decorative figure.
     """
     file = io.StringIO()
-    # Letters stay letters, so that they can be found.
+    # Text stays text, so that it can be searched.
     with matplotlib.rc_context({"svg.hashsalt": name, "svg.fonttype": "none"}):
         figure.savefig(file, format="svg", metadata=_NOTHING)
     drawn = re.sub(r"<(metadata|style).*?</\1>|<g id=[^>]*/>", "", file.getvalue(), flags=re.DOTALL)
@@ -81,20 +81,20 @@ def inline(figure: Figure, name: str, words: str = "") -> Markup:
 
 
 def _group(found: re.Match[str]) -> str:
-    """Begin a group without its name, and with what it says."""
+    """Return the start of a group without its id, with its tooltip."""
     return f"<g><title>{found[1].removeprefix(_SAYS)}</title>" if found[1].startswith(_SAYS) else "<g>"
 
 
 _ENDINGS = (".html", ".htm")
 _REPORT = re.compile(rb"<title>[^<]*: PeopleBoy report</title>")
-_HEAD_BYTES = 20_000  # within which the title stands
+_HEAD_BYTES = 20_000  # within which the title must be
 
 
 def check_place(out: Path) -> None:
     """Refuse a file that a report cannot be written to.
 
     Raises:
-        BadInput: it is a folder, does not end in .html or .htm, or holds something else than a report.
+        BadInput: it is a folder, does not end in .html or .htm, or contains something other than a report.
     """
     with writing_to(out):
         is_other = out.is_dir() or (out.exists() and not _is_report(out))
@@ -102,11 +102,11 @@ def check_place(out: Path) -> None:
     what = "is a folder" if out.is_dir() else "is not a report and will not be replaced" if is_other else ""
     if what or not is_page:
         advice = "give another --out" if is_page else "give --out a file that ends in .html"
-        raise BadInput(f"{out}: {what or 'a report is a page'}; {advice}")
+        raise BadInput(f"{out}: {what or 'a report is an HTML page'}; {advice}")
 
 
 def write_page(text: str, out: Path) -> None:
-    """Write a page, whole or not at all.
+    """Write a page, completely or not at all.
 
     Raises:
         BadInput: it cannot be written there.
@@ -121,7 +121,7 @@ def render_page(
     filters: Mapping[str, Callable[..., object]] | None = None,
     **content: object,
 ) -> str:
-    """Render a page as HTML from a template in one of these folders, which may use further filters."""
+    """Render a page as HTML from a template in one of these folders, with further filters."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(folders),
         autoescape=True,
@@ -134,11 +134,11 @@ def render_page(
 
 
 def data_address(media_type: str, content: bytes) -> str:
-    """Return the address by which a page holds a file, such as a picture, in itself."""
+    """Return the data URL that embeds a file, such as a picture, in a page."""
     return f"data:{media_type};base64,{base64.b64encode(content).decode()}"
 
 
 def _is_report(path: Path) -> bool:
-    """Whether a file begins as reports do, those of earlier versions too."""
+    """Return whether a file is a report, of this or an earlier version."""
     with path.open("rb") as file:
         return _REPORT.search(file.read(_HEAD_BYTES)) is not None

@@ -1,4 +1,4 @@
-"""Build the tables of a page, with words for readers who do not know the names of figures."""
+"""Build the tables of a page, with explanations for readers who do not know the metrics."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -24,29 +24,29 @@ from peopleboy.sim.truth.events import Move
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
 from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, Figure
 
-LONGEST = 40  # runs that are listed one by one
-_FEWEST_PAIRS = 3  # runs of the same scenario and seed, for an interval of their differences
+LONGEST = 40  # most runs that are listed individually
+_FEWEST_PAIRS = 3  # fewest runs of the same scenario and seed for an interval of their differences
 
-# Name of the figure, what to call it, and what it says to a first-time reader.
+# Name of the metric, its plain name, and its meaning for a first-time reader.
 PLAIN: Final = (
-    ("CR", "people found", "Of all moments in which a person was to be found: in how many a box lay there."),
-    ("CP", "boxes on people", "Of all boxes: how many lie on a person. The rest are false alarms."),
-    ("AA", "fit of the boxes", "How well boxes and people cover each other; 100 would be the very same box."),
-    ("IDF1", "identity", "How constantly one person has one number. Lost or swapped identities lower it."),
-    ("HOTA", "overall", "Detection and association in one figure, as in public benchmarks."),
-    ("MOTA", "few mistakes", "100 less all misses, false alarms and switches; it may fall below 0."),
-    ("IDSW", "switches", "How often the number on a person became another, even if only for a moment."),
-    ("false_tracks", "false tracks", "Track numbers that never lay on a person at all."),
+    ("CR", "people found", "Share of all frames with a person to be found in which a box is on the person."),
+    ("CP", "boxes on people", "Share of all boxes that are on a person. The others are false positives."),
+    ("AA", "fit of the boxes", "Overlap of boxes with ground truth boxes; 100 means identical boxes."),
+    ("IDF1", "identity", "How consistently a person keeps one number. Lost or swapped identities lower it."),
+    ("HOTA", "overall", "Detection and association in one metric, as in public benchmarks."),
+    ("MOTA", "few mistakes", "100 less all misses, false positives and switches; it can be negative."),
+    ("IDSW", "switches", "How often the number of a person changed, even if only for a moment."),
+    ("false_tracks", "false tracks", "Tracks that are never on a person."),
 )  # fmt: skip
 _SCORES: Final = {"following": FollowingScore, "corridor": CorridorScore, "comfort": ComfortScore}
 
 
 class Head(NamedTuple):
-    """The head of a column of a table."""
+    """The heading of a column of a table."""
 
     name: str
-    kind: str = ""  # "n" for numbers, "row" for what names its row, "meaning" for an aside
-    label: str = ""  # stands before a cell where there is no room for heads
+    kind: str = ""  # "n" for numbers, "row" for row headings, "meaning" for explanations
+    label: str = ""  # prefix of a cell on narrow screens, which have no column headings
 
 
 class Bad(NamedTuple):
@@ -56,14 +56,14 @@ class Bad(NamedTuple):
 
 
 class PageTable(NamedTuple):
-    """A table; each row has a cell for each head."""
+    """A table; each row has a cell for each heading."""
 
     heads: Sequence[Head]
     rows: Sequence[tuple[str | Bad, ...]]
 
 
 def losses(found: RunFindings) -> PageTable:
-    """List every time that a track disappeared, and why."""
+    """List the losses of tracks, and their causes."""
     heads = (
         Head("time", "n"),
         Head("number", "n", "number"),
@@ -83,7 +83,7 @@ def losses(found: RunFindings) -> PageTable:
 
 
 def runs_of(column: Column) -> PageTable:
-    """List the runs of a column one by one, the worst first."""
+    """List the runs of a column, the worst first."""
     names = ("found", "identity")
     heads = (Head("run", "row"), Head("found (CR)", "n", names[0]), Head("identity (IDF1)", "n", names[1]))
     rows = [
@@ -97,7 +97,7 @@ def runs_of(column: Column) -> PageTable:
 
 
 def occlusions(column: Column) -> PageTable:
-    """List each time that a person was wholly hidden and came back in the first run."""
+    """List the full occlusions in the first run after which the person came back."""
     names = {person.id: spoken(person.name) for person in column.found.people}
     heads = ("from", "wholly hidden for", "number before", "after", "found again after")
     rows = []
@@ -113,7 +113,7 @@ def occlusions(column: Column) -> PageTable:
 
 
 def identities_kept(columns: Sequence[Column]) -> PageTable:
-    """Count how many people kept their identity in each column, by how long they were wholly hidden."""
+    """Count identities kept in each column, by duration of the full occlusion."""
     tables = [by_length([one for of_run in c.occlusions for one in of_run]) for c in columns]
     rows = []
     for index, (low, high) in enumerate(pairwise(LENGTHS_S)):
@@ -125,14 +125,14 @@ def identities_kept(columns: Sequence[Column]) -> PageTable:
 
 
 def modes(found: RunFindings) -> PageTable:
-    """List what the robot did, and why."""
+    """List the robot's modes, and their reasons."""
     lines = [line for line in found.run.events if line.kind == "mode"]
     rows = tuple((seconds(line.time_s), line.other, line.why) for line in lines)
     return PageTable((Head("time", "n"), Head("mode", "row"), Head("why")), rows)
 
 
 def moves(found: RunFindings) -> PageTable:
-    """List what happened to the things that were moved, and who moved them."""
+    """List the events of moved objects, and the people who moved them."""
     lines = [line for line in found.run.events if line.kind.startswith(THING)]
     rows = [
         (
@@ -155,7 +155,7 @@ def moves(found: RunFindings) -> PageTable:
 
 
 def _from_to(move: Move | None) -> str:
-    """Where a thing was and is, in the world: x, y, and the height of its foot."""
+    """Format old and new position of an object in the world: x, y, and height of its base."""
     if move is None:
         return ""
     places = (", ".join(f"{value:.2f}" for value in place) for place in (move.from_m, move.to_m))
@@ -163,21 +163,21 @@ def _from_to(move: Move | None) -> str:
 
 
 def plain_figures(columns: Sequence[Column]) -> PageTable:
-    """Show the few figures that say most, under plain names."""
+    """Show the most important metrics, with plain names."""
     by_name = {figure.name: figure for figure in FIGURES}
     chosen = [(f"{plain} ({name})", meaning, by_name[name]) for name, plain, meaning in PLAIN]
     return _figures(columns, [(name, meaning, f.unit, _values(columns, f)) for name, meaning, f in chosen])
 
 
 def all_figures(columns: Sequence[Column]) -> PageTable:
-    """Show every figure that some run has, with its usual name."""
+    """Show every metric that is defined for some run, with its usual name."""
     every = [scores for column in columns for scores in column.scores]
     defined = [f for f in FIGURES if f.group != FLOOR or any(map(f.is_defined_for, every))]
     return _figures(columns, [(f.name, f.meaning, f.unit, _values(columns, f)) for f in defined])
 
 
 def drive_figures(columns: Sequence[Column], group: str) -> PageTable:
-    """Show how the robot drove, if any run says: `following`, `corridor` or `comfort`."""
+    """Show the driving metrics of a group, `following`, `corridor` or `comfort`, if any run has them."""
     rows = [[_rows(found.run, group) for found in column.runs] for column in columns]
     first = next((of_run for column in rows for of_run in column if of_run), [])
 
@@ -192,7 +192,7 @@ def drive_figures(columns: Sequence[Column], group: str) -> PageTable:
 
 
 def number(value: float, unit: str = "") -> str:
-    """Write a figure."""
+    """Format a value."""
     return "-" if math.isnan(value) else f"{value:{_form(value, unit)}} {unit}".rstrip()
 
 
@@ -209,7 +209,7 @@ def _rows(run: FinishedRun, group: str) -> list[Row]:
         return score(**{name: math.nan if v is None else v for name, v in figures.items()}).rows()
     except (TypeError, ValueError, AttributeError) as error:
         path = run.folder / "metrics.json"
-        raise BadInput(f"{path}: {group}: not the figures of this version; run the scenario again") from error
+        raise BadInput(f"{path}: {group}: not the metrics of this version; run the scenario again") from error
 
 
 def _values(columns: Sequence[Column], figure: Figure) -> list[list[float]]:
@@ -219,7 +219,7 @@ def _values(columns: Sequence[Column], figure: Figure) -> list[list[float]]:
 def _figures(
     columns: Sequence[Column], lines: Sequence[tuple[str, str, str, list[list[float]]]]
 ) -> PageTable:
-    """Lay out figures: name, meaning, unit, and the values of the runs of each column."""
+    """Lay out metrics: name, meaning, unit, and the values of the runs of each column."""
     is_pair = len(columns) == 2
     heads = (Head("figure", "row"), *_heads(columns), *([Head("difference", "n", "difference")] * is_pair))
     rows = [
@@ -230,7 +230,7 @@ def _figures(
         )
         for name, meaning, unit, values in lines
     ]
-    return PageTable((*heads, Head("what it says", "meaning")), rows)
+    return PageTable((*heads, Head("meaning", "meaning")), rows)
 
 
 def _heads(columns: Sequence[Column]) -> list[Head]:
@@ -239,7 +239,7 @@ def _heads(columns: Sequence[Column]) -> list[Head]:
 
 
 def _cell(values: Sequence[float], unit: str) -> str:
-    """One value, or mean and standard deviation over runs."""
+    """Format one value, or mean and standard deviation over runs."""
     known = [value for value in values if not math.isnan(value)]
     if len(values) == 1 or not known:
         return number(known[0] if known else math.nan, unit)
@@ -248,7 +248,7 @@ def _cell(values: Sequence[float], unit: str) -> str:
 
 
 def _difference(columns: Sequence[Column], values: Sequence[Sequence[float]], unit: str) -> str:
-    """Second less first: of runs of the same scenario and seed, with an interval where there are enough."""
+    """Format second less first, over runs of the same scenario and seed; with an interval for enough runs."""
     one, other = (
         dict(zip((found.run.title for found in column.runs), of, strict=True))
         for column, of in zip(columns, values, strict=True)

@@ -1,9 +1,9 @@
-"""The pictures of a page: the worst moments of its runs, and their contact sheets.
+"""Make the pictures of a page: the worst moments of its runs, and their contact sheets.
 
-Moments are seen by the camera by which a run is scored. Its images are those of the run's folder if it was
-run with frames, or else those of its recording. Without both, the scene is played again with the commands
-that the robot was given, which takes as long as the run; where that is not possible, as with another version
-or without a physics engine, boxes alone are drawn.
+Moments show the camera by which a run is scored. Images are read from the run's folder if it was run with
+frames, or else from its recording. Without both, the run is replayed with the recorded commands, which takes
+as long as the run. If that is not possible, as with another version or without a physics engine, only boxes
+are drawn.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -48,25 +48,25 @@ from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import Box, Status
 
 SCALE = 2
-CROWD, CROWD_SCALE = 5, 4  # so many people need more room for what is written at them
-_WIDE_PX = 480  # of an image; wider ones are enlarged the less
-_DARK = 40  # grey of a picture whose image is lost
+CROWD, CROWD_SCALE = 5, 4  # this many people need more room for labels
+_WIDE_PX = 480  # of an enlarged image; wide images are enlarged less
+_DARK = 40  # grey level of a picture without an image
 
 Image = NDArray[Any]
 
 
 class Origin(StrEnum):
-    """Where an image is from."""
+    """Source of an image."""
 
     FRAMES = "the run's own image"
     RECORDING = "from the run's recording"
     REPLAY = "rendered again from scenario.yaml"
-    CHANGED = "boxes only, as this scene cannot be rendered again as it was"
+    CHANGED = "boxes only, as the scene cannot be rendered identically"
     NO_PHYSICS = "boxes only, as PyBullet is not installed"
 
 
 class DrawnFrame(NamedTuple):
-    """A picture of one frame, by which camera and when it was taken, and where it is from."""
+    """A picture of one frame, with its camera, its time and the source of its image."""
 
     picture: Picture
     camera: str
@@ -75,7 +75,7 @@ class DrawnFrame(NamedTuple):
 
 
 class _Truth(NamedTuple):
-    """What is drawn of a person's truth."""
+    """Ground truth of a person for drawing."""
 
     name: str
     box: Box | None
@@ -83,7 +83,7 @@ class _Truth(NamedTuple):
 
 
 def show_frames(found: RunFindings, frames: Sequence[int]) -> dict[int, DrawnFrame]:
-    """Draw some frames (from 1) of a run; of a slow camera, what it saw last."""
+    """Draw some frames (from 1) of a run, with the newest image of a slow camera."""
     camera, run = found.camera, found.run
     taken = {frame: _newest(frame, run.rate_hz, found.view.rate_hz) for frame in frames}
     wanted = sorted(set(taken.values()))
@@ -101,13 +101,13 @@ def show_frames(found: RunFindings, frames: Sequence[int]) -> dict[int, DrawnFra
 
 
 def _newest(frame: int, rate_hz: int, images_hz: int | None) -> int:
-    """Return the frame (from 1) at which a camera took its newest image."""
+    """Return the frame (from 1) of a camera's newest image."""
     step = rate_hz // (images_hz or rate_hz)
     return (frame - 1) // step * step + 1
 
 
 def _recorded(run: FinishedRun, camera: str, frames: Sequence[int]) -> dict[int, Image]:
-    """Read what the recording has, if the run was not written image by image."""
+    """Read images from the recording, unless the run's folder has images."""
     recording = run.folder / "recording.rrd"
     if run.about.images or not recording.is_file():
         return {}
@@ -119,7 +119,7 @@ def _recorded(run: FinishedRun, camera: str, frames: Sequence[int]) -> dict[int,
 def images_of(
     run: FinishedRun, frames: Sequence[int], image: str
 ) -> tuple[dict[int, Image], dict[int, Origin]]:
-    """Get a camera's images at some frames (from 1) of a run, as it gives them, and where each is from."""
+    """Return a camera's images at some frames (from 1) of a run, and the source of each."""
     stored = _stored(run, frames, image)
     missing = [frame for frame in frames if frame not in stored]
     has_physics = find_spec("pybullet") is not None
@@ -151,7 +151,7 @@ def _draw(found: RunFindings, frame: int, image: Image | None) -> Picture:
 
 
 def _stored(run: FinishedRun, frames: Sequence[int], image: str) -> dict[int, Image]:
-    """Read the images that are in the folder."""
+    """Read the images in the run's folder."""
     images = {}
     for frame in frames:
         path = run.folder / image / image_file(frame)
@@ -162,7 +162,7 @@ def _stored(run: FinishedRun, frames: Sequence[int], image: str) -> dict[int, Im
 
 
 def _again(run: FinishedRun, frames: Sequence[int], image: str) -> dict[int, Image]:
-    """Play the scene again as far as the last frame wanted, or until it goes another way."""
+    """Replay the run up to the last requested frame, or until the replay differs."""
     from peopleboy.scenarios.export.replay import replay
 
     images = {}
@@ -186,14 +186,14 @@ def _parts(row: Row, camera: CameraGeometry) -> tuple[Box | None, ...]:
 
 
 _JPEG_QUALITY, _TILE_QUALITY = 80, 72
-_MOMENTS = 6  # of one run; of two side by side, each has half as many
-_RUNS_SHOWN = 4  # of many runs, of which the worst moment is shown
+_MOMENTS = 6  # moments of one run; two runs side by side have half as many each
+_RUNS_SHOWN = 4  # runs of a group of which the worst moment is shown
 
 _Stills = Mapping[str, Mapping[int, DrawnFrame]]  # by label of the column, then frame
 
 
 class PagePicture(NamedTuple):
-    """A picture inside the page: its data address, what it shows in words, and what is written below."""
+    """An embedded picture: its data URL, its text alternative, and its caption."""
 
     address: str
     words: str
@@ -201,7 +201,7 @@ class PagePicture(NamedTuple):
 
 
 class PicturedMoment(NamedTuple):
-    """A bad moment, whose it is, its pictures, and where they are from."""
+    """A moment, the label of its run, its pictures, and their sources."""
 
     moment: BadMoment
     whose: str
@@ -210,7 +210,7 @@ class PicturedMoment(NamedTuple):
 
 
 def pictured_moments(columns: Sequence[Column]) -> list[PicturedMoment]:
-    """Show the worst moments: of single runs in time, of many runs the worst of the worst runs.
+    """Return the worst moments: of single runs in time order, of many runs the worst of the worst runs.
 
     Single runs of the same scene are shown side by side at each moment.
     """
@@ -233,7 +233,7 @@ def pictured_moments(columns: Sequence[Column]) -> list[PicturedMoment]:
 
 
 def contact_sheet(run: FinishedRun) -> list[PagePicture]:
-    """The tiles of a run's contact sheet; none if it is gone."""
+    """Return the tiles of a run's contact sheet; none if the file is missing."""
     try:
         tiles = [(tile.picture, tile.words) for tile in read_tiles(run.folder / "contact_sheet.png")]
     except BadInput:
@@ -257,7 +257,7 @@ def _of_many(column: Column, is_beside: bool) -> list[PicturedMoment]:
 
 
 def _pictured(moment: BadMoment, whose: str, stills: _Stills, is_beside: bool) -> PicturedMoment:
-    """Return a moment its pictures; where columns stand beside each other, they are distinguished."""
+    """Return a moment with its pictures; captions name the column if there are several."""
     seen = [(label, of[frame]) for frame in moment.frames for label, of in stills.items() if frame in of]
     pictures = []
     for label, still in seen:
@@ -269,13 +269,13 @@ def _pictured(moment: BadMoment, whose: str, stills: _Stills, is_beside: bool) -
 
 
 def page_jpeg(image: NDArray[np.uint8], quality: int) -> str:
-    """Return an image as an address for a page."""
+    """Return an image as a data URL."""
     return data_address("image/jpeg", encode_jpeg(image, quality))
 
 
-# A strip of a page: where attention would look when its person was learned, lost, away, and found again.
+# Strip of attention scores at key moments: person learned, lost, away, and found again.
 
-_ATTENTIVE: Final = "attentive"  # how the names of such trackers begin
+_ATTENTIVE: Final = "attentive"  # prefix of the names of such trackers
 _QUALITY: Final = 80
 _THICK: Final = 2
 
@@ -288,9 +288,9 @@ class _Learned(NamedTuple):
 
 
 def attention_strip(found: RunFindings) -> list[PagePicture]:
-    """Draw the key moments of the person on whom attention is: each image beside the score of every place.
+    """Draw the key moments of the person that attention has learned: image and score of every place.
 
-    There are none for other trackers, for people who were never seen well, and where no images can be had.
+    The result is empty for other trackers, for people who were never clearly visible, and without images.
     """
     if not found.run.about.tracker.startswith(_ATTENTIVE):
         return []
@@ -308,7 +308,7 @@ def attention_strip(found: RunFindings) -> list[PagePicture]:
 
 
 def _learned(found: RunFindings) -> _Learned | None:
-    """Find the person who was seen well first, and the first image in which it was known."""
+    """Find the first person who was clearly visible, and the first image after learning."""
     calibrations = calibrations_of(found.run.robot.cameras)
     camera = next((name for name in LOOKED_AT if name in calibrations), None)
     seen: dict[int, int] = {}
@@ -324,7 +324,7 @@ def _learned(found: RunFindings) -> _Learned | None:
 
 
 def _absence(found: RunFindings, learned: _Learned) -> dict[int, str]:
-    """Name the frames of the person's longest absence: its start, its middle, and its end."""
+    """Return start, middle and end of the person's longest absence, as names by frame."""
     who = f"track {learned.number}"
     lines = [line for line in found.run.events if line.frame > learned.frame]
     ends = [one.frame for one in lines if one.kind == "re-identified" and who == (one.other or one.who)]
@@ -349,7 +349,7 @@ def _pictures(
 
 
 def _drawn(image: NDArray[np.uint8], focus: Focus, colour: Sequence[int]) -> NDArray[np.uint8]:
-    """Lay an image (H, W, 3) and its scores beside each other, with a cross and a box at the focus."""
+    """Place an image (H, W, 3) and its scores side by side, with a cross and a box at the focus."""
     height, width = image.shape[:2]
     grey = np.rint(255.0 * np.sqrt(np.clip(focus.scores, 0.0, 1.0))).astype(np.uint8)
     scores = cv2.applyColorMap(cv2.resize(grey, (width, height)), cv2.COLORMAP_INFERNO)[..., ::-1]

@@ -1,4 +1,4 @@
-"""The page: everything about one run, or about several side by side, in one file that needs nothing else."""
+"""Build the report page of one run, or of several side by side, as one self-contained file."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -34,21 +34,21 @@ from peopleboy.tracker.frame import THERMAL
 HERE = Path(__file__).parent
 _NAMED = 4  # scenarios in a title
 _DRIVES = {
-    "following": "How well the person was followed",
-    "corridor": "How well the corridor was followed",
-    "comfort": "How comfortable people were with the robot",
+    "following": "Person following",
+    "corridor": "Corridor following",
+    "comfort": "Comfort of people near the robot",
 }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RunSection:
-    """What a page shows of one run by itself."""
+    """Contents of a page for a single run."""
 
     label: str
     found: RunFindings
     losses: PageTable
     occlusions: PageTable
-    plan: Markup | None  # None if the place cannot be built again
+    plan: Markup | None  # None if the place cannot be rebuilt
     attention: Sequence[PagePicture]
     things: Markup
     moves: PageTable
@@ -61,17 +61,17 @@ class ReportPage:
     """Everything that the template of a page shows.
 
     Attributes:
-        columns: what stands side by side.
-        singles: of columns of one run.
-        crowds: columns of many runs, each with the table of its runs, and whether that lacks some.
-        lacking: what the page cannot show, and why, a line each.
-        moments: the worst ones, with pictures.
-        timelines: of each run, or of runs of one scene together, under their titles.
+        columns: the columns of the page.
+        singles: sections of columns with a single run.
+        crowds: columns of many runs, each with the table of its runs, and whether the table is cut.
+        lacking: missing contents and the reasons, one line each.
+        moments: the worst moments, with pictures.
+        timelines: timelines of each run, or of runs of one scene together, by title.
         first_repeated: number of the first track whose colour repeats that of another; 0 for none.
-        lengths: how many identities were kept, by how long people were hidden.
-        drives: figures of how the robot drove, by title.
-        curves: drawn errors, by title.
-        settings: name and value of what is needed to do it again, by column's label.
+        lengths: numbers of identities kept, by duration of the occlusion.
+        drives: driving metrics, by title.
+        curves: charts of errors, by title.
+        settings: names and values needed to repeat the run, by label of the column.
     """
 
     title: str
@@ -91,7 +91,7 @@ class ReportPage:
 
     @property
     def description(self) -> str:
-        """What happens in the scenario of a page about one run."""
+        """Description of the scenario, if the page is about one run."""
         return str(_said(self.columns[0].found.run).get("description", "")) if self.is_of_one_run else ""
 
     @property
@@ -106,12 +106,12 @@ class ReportPage:
 
     @property
     def has_moves(self) -> bool:
-        """Whether anything was moved."""
+        """Whether any object was moved."""
         return any(section.moves.rows for section in self.singles)
 
     @property
     def has_modes(self) -> bool:
-        """Whether a robot did more than one thing."""
+        """Whether a robot had more than one mode."""
         return any(len(section.modes.rows) > 1 for section in self.singles)
 
 
@@ -120,13 +120,13 @@ def write_report(paths: Sequence[Path], out: Path) -> list[str]:
 
     Args:
         paths: as for `read_columns`.
-        out: the page; nothing is written if anything is wrong.
+        out: file of the page; nothing is written after an error.
 
     Returns:
-        What the page lacks and why, a line each.
+        Missing contents of the page and the reasons, one line each.
 
     Raises:
-        BadInput: there is no complete run, or the page cannot be written, or not there.
+        BadInput: there is no complete run, or the page cannot be written to this file.
     """
     check_place(out)
     columns = read_columns(paths)
@@ -140,7 +140,7 @@ def write_report(paths: Sequence[Path], out: Path) -> list[str]:
 def make_page(
     columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: Sequence[str]
 ) -> ReportPage:
-    """Gather what the page shows; `lines` say what it lacks."""
+    """Build the contents of the page; `lines` describe what is missing."""
     singles = [column for column in columns if column.is_single]
     crowds = [column for column in columns if not column.is_single]
     return ReportPage(
@@ -178,7 +178,7 @@ def _section(column: Column) -> RunSection:
 
 
 def _notes(columns: Sequence[Column]) -> list[str]:
-    """Describe what must be known of the figures, a line a tracker."""
+    """Return the caveats of the metrics, one line per tracker."""
     return [f"{column.found.run.about.tracker}: {note}" for column in columns for note in column.notes]
 
 
@@ -186,20 +186,20 @@ def _unknown(columns: Sequence[Column]) -> list[str]:
     """Return one line per tracker with the unknown properties of its imported tracks."""
     adopted = {f.run.about.tracker: f.run.about.adopted for column in columns for f in column.runs}
     return [
-        f"the tracks of {name} were made elsewhere: their {listed(imported.unknown)} are unknown"
+        f"the tracks of {name} are imported: their {listed(imported.unknown)} are unknown"
         for name, imported in adopted.items()
         if imported is not None
     ]
 
 
 def _without_images(moments: Sequence[PicturedMoment]) -> list[str]:
-    """Say that images cannot be rendered again here, if any would have to be."""
-    line = "PyBullet is not installed; so the moments of runs without --frames are drawn as boxes only"
+    """Return a notice if images should be rendered again, but PyBullet is missing."""
+    line = "PyBullet is not installed: moments of runs without --frames show boxes only"
     return [line] * any(Origin.NO_PHYSICS in moment.origins for moment in moments)
 
 
 def _title(columns: Sequence[Column]) -> str:
-    """Name the scenes: scenario and seed of single runs, else the scenarios and how many runs there are."""
+    """Return the title: scenario and seed of single runs, else scenarios and number of runs."""
     runs = [found.run for column in columns for found in column.runs]
     if len(runs) == len(columns):
         return listed(list(dict.fromkeys(run.title for run in runs)))
@@ -208,13 +208,13 @@ def _title(columns: Sequence[Column]) -> str:
 
 
 def _first_repeated(singles: Sequence[Column]) -> int:
-    """The first number whose colour repeats that of another; 0 if there are not so many numbers."""
+    """Return the first track number whose colour repeats that of another; 0 if there is none."""
     most = max((int(c.found.boxes[1].id.max(initial=0)) for c in singles), default=0)
     return TRACK_COLOURS + 1 if most > TRACK_COLOURS else 0
 
 
 def _settings(column: Column) -> list[tuple[str, str]]:
-    """What is needed to do it again, name and value."""
+    """Return the names and values needed to repeat the run."""
     found = column.found
     run, runs = found.run, [one.run for one in column.runs]
     played, about, adopted = _said(run), run.about, run.about.adopted
@@ -223,17 +223,17 @@ def _settings(column: Column) -> list[tuple[str, str]]:
     seeds = ", ".join(dict.fromkeys(str(one.about.seed) for one in runs))
     rows = [
         ("scenario", ", ".join(dict.fromkeys(one.about.scenario for one in runs))),
-        ("what happens", " ".join(str(played.get("description", "")).split()) if column.is_single else ""),
+        ("description", " ".join(str(played.get("description", "")).split()) if column.is_single else ""),
         ("seed" if column.is_single else "seeds", seeds),
         ("tracker", about.tracker),
-        ("tracks", "" if adopted is None else f"{adopted.tracks}, made elsewhere"),
+        ("tracks", "" if adopted is None else f"{adopted.tracks}, imported"),
         ("boxes", "" if found.yardstick == BoxReference() else f"scored against {found.yardstick}"),
         ("robot", about.behaviour or (str(behaviour) if played else "")),
         ("robot driven by", "" if adopted is None else adopted.driven_by),
         ("images", _images(run)),
         ("faults", _faults(played.get("faults", []))),
         ("renderer", about.renderer),
-        ("length", f"{run.frames} frames, {run.rate_hz} a second" if column.is_single else ""),
+        ("length", f"{run.frames} frames, {run.rate_hz} per second" if column.is_single else ""),
         ("versions", ", ".join(f"{name} {version}" for name, version in about.versions.items())),
         ("folder", str(run.folder if column.is_single else run.folder.parent)),
     ]
@@ -241,12 +241,12 @@ def _settings(column: Column) -> list[tuple[str, str]]:
         steered = "" if about.behaviour is None else f" --behaviour {about.behaviour}"
         steered += "" if about.boxes == "torso" else f" --boxes {about.boxes}"
         command = f"peopleboy run {run.folder}/scenario.yaml --tracker {about.tracker}{steered} --out NEW"
-        rows.append(("again", command))
+        rows.append(("repeat", command))
     return [(name, value) for name, value in rows if value]
 
 
 def _images(run: FinishedRun) -> str:
-    """What the cameras' images are like; nothing if that cannot be read."""
+    """Describe the cameras' images; empty if the scenario is unreadable."""
     try:
         return describe_images([run.robot.cameras])
     except BadInput:
@@ -254,7 +254,7 @@ def _images(run: FinishedRun) -> str:
 
 
 def _said(run: FinishedRun) -> Mapping[str, Any]:
-    """What scenario.yaml says; nothing if it cannot be read."""
+    """Return the content of scenario.yaml; empty if it is unreadable."""
     try:
         return run.played
     except BadInput:

@@ -1,1 +1,1 @@
-"""How well runs went, in figures, and how sure these are."""
+"""Metrics of runs and their confidence intervals."""

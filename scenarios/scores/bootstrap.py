@@ -1,4 +1,4 @@
-"""Give the confidence interval of a mean by the bootstrap."""
+"""Estimate the confidence interval of a mean by the bootstrap."""
 
 import math
 from collections.abc import Sequence
@@ -12,9 +12,9 @@ LEVEL = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """A mean and where it lies with a confidence of 95 %.
+    """A mean and its 95 % confidence interval.
 
-    All are NaN where nothing was measured, and the ends where a single value was.
+    All values are NaN without measurements; the bounds are NaN for a single measurement.
     """
 
     mean: float
@@ -23,16 +23,16 @@ class Interval:
 
     @property
     def is_known(self) -> bool:
-        """Whether there are ends."""
+        """Whether the interval has bounds."""
         return not math.isnan(self.low)
 
     def to_json(self) -> list[float | None]:
-        """Return mean and ends, None for those that there are not."""
+        """Return mean and bounds, None for undefined ones."""
         return [None if math.isnan(value) else value for value in (self.mean, self.low, self.high)]
 
 
 def bootstrap(values: Sequence[float], rng: np.random.Generator) -> Interval:
-    """Return the mean of some values and its percentile interval; NaN are left out.
+    """Return the mean of some values and its percentile interval; NaN is ignored.
 
     Source: B. Efron, Bootstrap methods: another look at the jackknife, Annals of Statistics 7, 1979.
     """
@@ -41,7 +41,7 @@ def bootstrap(values: Sequence[float], rng: np.random.Generator) -> Interval:
         return Interval(math.nan, math.nan, math.nan)
     if known.size == 1:
         return Interval(float(known[0]), math.nan, math.nan)
-    from scipy import stats  # here, as it takes longer to load than most that imports this
+    from scipy import stats  # here, as SciPy's statistics load slowly
 
     found = stats.bootstrap(
         (known,), np.mean, n_resamples=RESAMPLES, confidence_level=LEVEL, method="percentile", rng=rng

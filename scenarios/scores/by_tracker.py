@@ -21,15 +21,15 @@ from peopleboy.tracker.evaluation.table import FIGURES, spread, to_json
 Scene = tuple[str, int]
 """Scenario, or footage, and seed."""
 
-_BESIDE: Final = ("drawn", "description", "physics")  # which make no other scene, or are an option of `run`
-_OF_ROBOT: Final = ("tracker", "behaviour", "cameras")  # the same; of cameras, those mounted for a tracker
+_BESIDE: Final = ("drawn", "description", "physics")  # no part of the scene, or options of `run`
+_OF_ROBOT: Final = ("tracker", "behaviour", "cameras")  # likewise; only cameras mounted for a tracker
 
 
 def check_same_scenes(sides: Sequence[Mapping[Path, Scene | None]]) -> None:
-    """Refuse runs of several sides that say to be of the same scene, but are not.
+    """Check that runs with the same scenario name and seed show the same scene.
 
     Args:
-        sides: what is compared with each other: the folders of runs, and what their run.json says to be seen.
+        sides: the groups that are compared: folders of runs, with the scene from their run.json.
 
     Raises:
         BadInput: scenarios of the same name and seed differ in more than tracker and behaviour.
@@ -42,13 +42,13 @@ def check_same_scenes(sides: Sequence[Mapping[Path, Scene | None]]) -> None:
             home, other = first.setdefault(scene, (side, folder))
             if home != side and (change := _change(other, folder)):
                 raise BadInput(
-                    f"{folder}: is another {scene[0]}, seed {scene[1]}, than {other}: {change}; run both "
-                    "again, or give one of the scenarios another name"
+                    f"{folder}: {scene[0]}, seed {scene[1]}, differs from {other}: {change}; run both "
+                    "again, or rename one of the scenarios"
                 )
 
 
 def _change(one: Path, other: Path) -> str:
-    """Say in what the scenes of two runs differ first; nothing if they do not, or one is not known."""
+    """Describe the first difference between the scenes of two runs; empty without one or if unknown."""
     paths = one / "scenario.yaml", other / "scenario.yaml"
     if not all(path.is_file() for path in paths) or paths[0].read_bytes() == paths[1].read_bytes():
         return ""
@@ -57,10 +57,10 @@ def _change(one: Path, other: Path) -> str:
 
 
 def _scene(path: Path) -> Mapping[str, Any]:
-    """Read what there is to be seen, the robot's own cameras included; nothing of a file that is spoilt."""
+    """Read the scene of a scenario file, with the robot's own cameras; empty for an unreadable file."""
     try:
         data = read_yaml(path)
-    except BadInput:  # reported when the scene is played again
+    except BadInput:  # reported when the scene is replayed
         return {}
     if "place" not in data:
         return {}
@@ -74,7 +74,7 @@ def _scene(path: Path) -> Mapping[str, Any]:
 
 
 def _changes(before: Any, after: Any, where: str) -> Iterator[str]:
-    """Return key by key what differs."""
+    """Yield the differences, key by key."""
     if isinstance(before, dict) and isinstance(after, dict):
         for key in dict.fromkeys((*before, *after)):
             yield from _changes(before.get(key), after.get(key), f"{where}.{key}" if where else str(key))
@@ -96,12 +96,12 @@ class ScoredRun:
     """The scores of a run.
 
     Attributes:
-        name: of its folder, or of the file that its tracks are in.
-        tracker: whose tracks they are.
-        scene: what there was to be seen; None where nobody knows.
-        scores: of the tracks.
-        by: what boxes were held against; None for squares on the floor, footage and files.
-        notes: what whoever reads the scores must know, a line each.
+        name: name of its folder, or of the file with its tracks.
+        tracker: name of the tracker.
+        scene: the scene; None if unknown.
+        scores: scores of the tracks.
+        by: ground truth boxes of the scores; None for squares on the floor, footage and files.
+        notes: caveats of the scores, one line each.
     """
 
     name: str
@@ -114,13 +114,13 @@ class ScoredRun:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Difference:
-    """How a tracker differs from another one in the scenes that both saw.
+    """Difference between two trackers over the scenes that both have runs of.
 
     Attributes:
-        tracker: whose figures are higher where a difference is positive.
-        other: from whose figures they differ.
-        pairs: how many scenes there are.
-        figures: mean of the differences and its interval, by the figure's name.
+        tracker: the tracker with the higher metric if a difference is positive.
+        other: the tracker it is compared with.
+        pairs: number of scenes.
+        figures: mean difference and its interval, by name of the metric.
     """
 
     tracker: str
@@ -133,11 +133,11 @@ Groups = Mapping[str, Sequence[ScoredRun]]
 
 
 def score_by_tracker(folders: Sequence[Path], options: ScoreOptions | None = None) -> Groups:
-    """Score the runs in these folders, and sort them by tracker, in the order in which these come first.
+    """Score the runs in these folders, and group them by tracker, in the order of first appearance.
 
     Raises:
-        BadInput: as for `evaluate_runs`, or a run does not say what its tracker was, or trackers saw
-            different scenes of one name.
+        BadInput: as for `evaluate_runs`, or a run does not name its tracker, or scenes with the same name
+            differ between trackers.
     """
     groups: dict[str, list[ScoredRun]] = {}
     for folder, people in zip(folders, evaluate_runs(folders, options), strict=True):
@@ -154,7 +154,7 @@ def score_by_tracker(folders: Sequence[Path], options: ScoreOptions | None = Non
 
 
 def differences(groups: Groups) -> list[Difference]:
-    """Compare every tracker but the first with the first, over the scenes that each of the two saw once."""
+    """Compare every other tracker with the first, over the scenes of which each of the two has one run."""
     (first, of_first), *others = groups.items()
     return [_difference(tracker, runs, first, of_first) for tracker, runs in others]
 
@@ -163,7 +163,7 @@ _KEYS: Final = {figure.name: figure.key for figure in FIGURES}
 
 
 def figures_of_all(groups: Groups) -> dict[str, Any]:
-    """Return all figures as JSON can hold them: of each run, of each tracker, and how trackers differ."""
+    """Return all metrics for JSON: of each run, of each tracker, and differences between trackers."""
     return {
         "trackers": {tracker: _together(runs) for tracker, runs in groups.items()},
         "differences": [
@@ -216,7 +216,7 @@ def _difference(
 
 
 def _once(runs: Sequence[ScoredRun]) -> Mapping[Scene, Scores]:
-    """Return the scores by scene, of those scenes that there is one run of."""
+    """Return the scores by scene, for scenes with exactly one run."""
     found: dict[Scene, list[Scores]] = {}
     for run in runs:
         if run.scene is not None:
@@ -228,12 +228,12 @@ _NAMES = tuple(ComfortScore.metrics())
 
 
 def comfort_by_tracker(groups: Groups) -> Mapping[str, ComfortScore]:
-    """Return the means over the runs of each tracker; trackers whose runs tell nothing of it are left out.
+    """Return the mean comfort metrics of each tracker; trackers without any are omitted.
 
-    What is undefined in a run is left out of the mean.
+    Undefined values of a run are omitted from the mean.
 
     Raises:
-        BadInput: a run has other figures than this version.
+        BadInput: a run has other metrics than this version.
     """
     found = {tracker: [_figures(Path(run.name)) for run in runs] for tracker, runs in groups.items()}
     known = {tracker: [figures for figures in runs if figures is not None] for tracker, runs in found.items()}
@@ -241,7 +241,7 @@ def comfort_by_tracker(groups: Groups) -> Mapping[str, ComfortScore]:
 
 
 def _figures(folder: Path) -> list[float] | None:
-    """The figures of a run in the order of the score's; None if it has none."""
+    """Return the comfort metrics of a run in the order of `ComfortScore`; None if it has none."""
     path = folder / "metrics.json"
     if not path.is_file():
         return None
@@ -252,7 +252,7 @@ def _figures(folder: Path) -> list[float] | None:
     if group is None:
         return None
     if not isinstance(group, dict) or set(group) != set(_NAMES):
-        raise BadInput(f"{path}: comfort: not the figures of this version; run the scenario again")
+        raise BadInput(f"{path}: comfort: not the metrics of this version; run the scenario again")
     return [math.nan if group[name] is None else float(group[name]) for name in _NAMES]
 
 

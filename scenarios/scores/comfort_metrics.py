@@ -1,4 +1,4 @@
-"""Score how comfortable people were with a robot that drives among them: nearness, collision times, jerk."""
+"""Score the comfort of people near a driving robot: distances, times to collision, jerk."""
 
 import math
 from dataclasses import dataclass
@@ -23,17 +23,17 @@ from peopleboy.sim.robot.robot_body import RADIUS_M, outline_gap
 INTIMATE_M: Final = 0.45
 PERSONAL_M: Final = 1.2
 SOCIAL_M: Final = 3.6
-_FORESEEN_S: Final = 30.0  # beyond which nobody goes on as they are
-_BODY_M: Final = 0.25  # radius of the disc that stands for a person
+_FORESEEN_S: Final = 30.0  # horizon beyond which constant velocity is not assumed
+_BODY_M: Final = 0.25  # radius of the disc that represents a person
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComfortScore(ScoreRecord):
-    """Scores of one run, over all of it and all people in it.
+    """Scores of one run, over the whole run and all people.
 
-    `min_time_to_collision_s` takes robot and person for discs; it is NaN if none would have touched within
-    30 s. Jerk is the second difference of the forward speed; `felt_jerk_m_s3` is NaN if nobody was within
-    social space. Numbers of intrusions are whole but in means of runs.
+    `min_time_to_collision_s` models robot and person as discs; it is NaN if none would have touched within
+    30 s. Jerk is the second difference of the forward speed; `felt_jerk_m_s3` is NaN if no person was in
+    social space. Numbers of intrusions are whole, except in means over runs.
 
     Source: metrics of HuNavSim (Perez-Higueras et al. 2023) and of Francis et al. 2023, Principles and
     Guidelines for Evaluating Social Robot Navigation, which have time in spaces, least time to collision and
@@ -52,7 +52,7 @@ class ComfortScore(ScoreRecord):
 
 
 def score_comfort(run: DriveRecord) -> ComfortScore:
-    """Score how a robot drove among people."""
+    """Score the comfort of people during a drive."""
     row = np.repeat(np.arange(len(run.time_s)), run.count)
     gap_m, soonest_s = np.full((2, len(run.time_s)), np.inf)
     np.minimum.at(gap_m, row, _gaps(run.robot[row], run.people))
@@ -64,9 +64,9 @@ def score_nearness(run: DriveRecord, gap_m: Floats, time_to_collision_s: Floats)
     """Score one run; a frame lasts until the next one.
 
     Args:
-        run: what happened.
-        gap_m: (T,) [m] from the robot's outline to the nearest person's middle; inf where nobody is there.
-        time_to_collision_s: (T,) [s] least over all people; inf where none is on a collision course.
+        run: record of the drive.
+        gap_m: (T,) [m] from the robot's outline to the nearest person's centre; inf without people.
+        time_to_collision_s: (T,) [s] minimum over all people; inf without a collision course.
     """
     lasts_s = np.diff(run.time_s, append=run.time_s[-1])
     is_personal, is_intimate = gap_m < PERSONAL_M, gap_m < INTIMATE_M
@@ -84,16 +84,16 @@ def score_nearness(run: DriveRecord, gap_m: Floats, time_to_collision_s: Floats)
 
 
 def _count_starts(flags: Flags) -> int:
-    """Count the runs of true values (T,)."""
+    """Count the spans of true values (T,)."""
     return int(np.sum(flags & ~np.concatenate([[False], flags[:-1]])))
 
 
 def times_to_collision(gaps: Floats, velocities: Floats, reach_m: float) -> Floats:
-    """Return after what times pairs of discs touch that go on as they are.
+    """Return the times after which pairs of discs touch at constant velocities.
 
     Args:
-        gaps: (Q, 2) [m] from one middle to the other.
-        velocities: (Q, 2) [m/s] of the other against the one.
+        gaps: (Q, 2) [m] from the centre of the first disc to that of the second.
+        velocities: (Q, 2) [m/s] of the second disc relative to the first.
         reach_m: [m] sum of the radii.
 
     Returns:
@@ -109,7 +109,7 @@ def times_to_collision(gaps: Floats, velocities: Floats, reach_m: float) -> Floa
 
 
 def _products(one: Floats, other: Floats) -> Floats:
-    """(Q,) scalar products of vectors (Q, 2)."""
+    """Return the scalar products (Q,) of vectors (Q, 2)."""
     products: Floats = (one[:, None, :] @ other[:, :, None])[:, 0, 0]
     return products
 
@@ -127,7 +127,7 @@ def _jerk(run: DriveRecord) -> Floats:
 
 
 def _gaps(robots: Floats, people: Floats) -> list[float]:
-    """Distances [m] on the floor of people, (Q, 4), from the outlines of robots, (Q, 3)."""
+    """Return the floor distances [m] of people, (Q, 4), from the outlines of robots, (Q, 3)."""
     return [
         outline_gap(Pose2(*robot), (x, y))
         for robot, (x, y) in zip(robots.tolist(), people[:, :2].tolist(), strict=True)
@@ -135,7 +135,7 @@ def _gaps(robots: Floats, people: Floats) -> list[float]:
 
 
 def _times_to_collision(robots: Floats, speeds: Floats, people: Floats) -> Floats:
-    """Times [s] (Q,) of robots, by pose and forward speed, and people, rows as above."""
+    """Return times to collision [s] (Q,) of robots, by pose and forward speed, with people; rows as above."""
     headings = robots[:, 2].tolist()
     own_x = speeds * [math.cos(heading) for heading in headings]
     own_y = speeds * [math.sin(heading) for heading in headings]

@@ -1,4 +1,4 @@
-"""Score how well a corridor was followed: in its middle, along its direction, without touching anything."""
+"""Score corridor following: position and heading relative to the centre line, and contacts."""
 
 import math
 from collections.abc import Sequence
@@ -37,26 +37,26 @@ class Leg:
 class CorridorScore(ScoreRecord):
     """Scores of one run.
 
-    Errors are over the frames on a leg, no nearer to its ends or a junction than its width: there the robot
-    turns. They count every frame there, also those in which it waits for people or passes them. They are NaN
-    if it never was on a leg. The angle to the centre line [rad] is either way along it.
+    Errors cover the frames on a leg that are at least the leg's width from its ends and junctions, where the
+    robot turns. Frames in which it waits for people or passes them are included. Errors are NaN if it was
+    never on a leg. The angle to the centre line [rad] is independent of the driving direction.
     """
 
     lateral_rms_m: float = metric("lateral error RMS", "m", "distance to the centre line, root mean square")
     lateral_max_m: float = metric("lateral error max", "m", "largest distance to the centre line")
     heading_error_rad: float = metric("heading error", "deg", "mean angle to the centre line")
-    contacts: int = metric("contacts", "", "contacts that began in the run")
+    contacts: int = metric("contacts", "", "number of contacts")
     mean_speed_m_s: float = metric("mean speed", "m/s", "distance driven divided by time")
     way_m: float = metric("distance driven", "m", "over the run")
     legs: int = metric("legs", "", "straight corridor sections that the robot drove along")
 
 
 def score_corridor(run: DriveRecord, legs: Sequence[Leg]) -> CorridorScore:
-    """Score one run in which the robot was to follow corridors.
+    """Score one run of corridor following.
 
     Args:
-        run: what happened.
-        legs: the corridors.
+        run: record of the drive.
+        legs: straight segments of the corridors.
     """
     robot = run.robot
     errors = [_errors(robot, leg, legs) for leg in legs]
@@ -79,7 +79,7 @@ def _errors(robot: Floats, leg: Leg, legs: Sequence[Leg]) -> tuple[Floats, Float
     way = np.subtract(leg.end_m, leg.start_m)
     place = _along_and_beside(robot[:, :2], leg)
     ends = _along_and_beside(np.array([end for other in legs for end in (other.start_m, other.end_m)]), leg)
-    ends = ends[np.abs(ends[:, 1]) < leg.width_m]  # its own, and those of legs that branch off
+    ends = ends[np.abs(ends[:, 1]) < leg.width_m]  # its own ends, and those of legs that branch off
     is_clear = np.all(np.abs(place[:, :1] - ends[:, 0]) > leg.width_m, axis=1)
     is_on = (place[:, 0] > 0.0) & (place[:, 0] < np.hypot(*way)) & (np.abs(place[:, 1]) < leg.width_m / 2.0)
     is_counted = is_on & is_clear
@@ -88,7 +88,7 @@ def _errors(robot: Floats, leg: Leg, legs: Sequence[Leg]) -> tuple[Floats, Float
 
 
 def _along_and_beside(points: Floats, leg: Leg) -> Floats:
-    """Express points in a leg: (N, 2) [m] from its start along it, and to the left of its centre line."""
+    """Return points in the frame of a leg: (N, 2) [m] along it from its start, and to the left of it."""
     way = np.subtract(leg.end_m, leg.start_m)
     x, y = way / np.hypot(*way)
     places: Floats = (points - leg.start_m) @ np.array([[x, -y], [y, x]])
@@ -101,7 +101,7 @@ def legs_of(plan: FloorPlan) -> tuple[Leg, ...]:
 
 
 def centre_line(area: Rectangle) -> Leg:
-    """Take an area for a corridor along its longer side."""
+    """Return an area as a corridor along its longer side."""
     x, y = area.centre
     across, up = area.max_x - area.min_x, area.max_y - area.min_y
     if across >= up:

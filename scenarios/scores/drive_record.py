@@ -1,4 +1,4 @@
-"""Record a drive among people, which its scores are made of, and declare the figures of these scores once."""
+"""Record a drive among people, the input of its scores, and declare the metrics of scores."""
 
 import math
 from array import array
@@ -22,21 +22,21 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DriveRecord:
-    """What happened in a run; one row a frame.
+    """The data of a run that its scores need; one row per frame.
 
     Attributes:
         time_s: (T,) [s] rising.
         robot: (T, 3) [m, m, rad] x, y, heading in the world frame.
         speed_m_s: (T,) of the robot, forwards.
-        is_contact: (T,) whether the robot touched anything or anyone.
-        target: (T, 2) [m] x, y of the person to follow, NaN while that one is not there.
-        track: (T,) number of the track that lay on this person, 0 for none.
-        is_wrong: (T,) whether the robot went after another person; None if that is not known.
-        count: (T,) how many people were there.
+        is_contact: (T,) whether the robot touched an object or a person.
+        target: (T, 2) [m] x, y of the person to follow, NaN while the person is absent.
+        track: (T,) number of the track on this person, 0 for none.
+        is_wrong: (T,) whether the robot followed another person; None if unknown.
+        count: (T,) number of people present.
         people: (Q, 4) [m, m, m/s, m/s] x, y and velocity of all of them, one frame after the other.
 
     Raises:
-        BadInput: the arrays do not have these shapes, or time does not rise.
+        BadInput: the arrays do not have these shapes, or time does not increase.
     """
 
     time_s: Floats
@@ -50,7 +50,7 @@ class DriveRecord:
     people: Floats
 
     def __post_init__(self) -> None:
-        """Refuse arrays that do not belong together."""
+        """Check that the shapes of the arrays match, and that time increases."""
         frames, one = len(self.time_s), (len(self.time_s),)
         wrong = one if self.is_wrong is None else self.is_wrong.shape
         arrays = (self.time_s, self.speed_m_s, self.is_contact, self.track, self.count)
@@ -61,28 +61,28 @@ class DriveRecord:
                 f"(T, 3), target (T, 2), people (Q, 4), with T > 0 and Q the sum of count, got {shapes}"
             )
         if not np.all(np.diff(self.time_s) > 0.0):
-            raise BadInput("drive: time_s must rise from frame to frame")
+            raise BadInput("drive: time_s must increase from frame to frame")
 
     @property
     def is_tracked(self) -> Flags:
-        """(T,) whether a track lay on the person to follow."""
+        """Whether a track was on the person to follow (T,)."""
         return self.track > 0
 
 
 class DriveLog:
-    """Collects what a `DriveRecord` holds, instant by instant."""
+    """Collects the data of a `DriveRecord` instant by instant."""
 
     def __init__(self) -> None:
         self._rows = array("d")  # 8 bytes a number, in runs of hours
         self._people = array("d")
 
     def add(self, truth: Truth | ImageFreeTruth, track: int, is_wrong: bool | None = None) -> None:
-        """Take in one instant.
+        """Add one instant.
 
         Args:
-            truth: of the instant.
-            track: number of the track that lies on the person to follow, 0 for none.
-            is_wrong: whether the robot goes after another person; None if that is not known.
+            truth: ground truth of the instant.
+            track: number of the track on the person to follow, 0 for none.
+            is_wrong: whether the robot follows another person; None if unknown.
         """
         robot, (speed_m_s, _), people = truth.robot, truth.robot_velocity, truth.people
         target = next((person.position_m for person in people if person.id == TARGET), (math.nan, math.nan))
@@ -94,7 +94,7 @@ class DriveLog:
             self._people.extend((*person.position_m, *person.velocity_m_s))
 
     def record(self) -> DriveRecord:
-        """Return what happened so far."""
+        """Return the record of all instants so far."""
         table = np.array(self._rows, np.float64).reshape(-1, 11)
         wrong = table[:, 9]
         return DriveRecord(
@@ -111,11 +111,11 @@ class DriveLog:
 
 
 def count_contacts(time_s: Floats, is_contact: Flags) -> int:
-    """Count the contacts that begin in a run; bouncing, or rubbing along a wall, is one contact.
+    """Count the contacts of a run; bouncing, or rubbing along a wall, is one contact.
 
     Args:
-        time_s: (T,) of the frames.
-        is_contact: (T,) whether the robot touched anything or anyone at each of them.
+        time_s: (T,) [s] times of the frames.
+        is_contact: (T,) whether the robot touched an object or a person in each frame.
     """
     touches = np.flatnonzero(is_contact)
     is_apart = time_s[touches[1:] - 1] - time_s[touches[:-1]] >= CONTACT_ENDS_S
@@ -123,23 +123,23 @@ def count_contacts(time_s: Floats, is_contact: Flags) -> int:
 
 
 def mean(values: Floats | Flags) -> float:
-    """Return the mean of values (N,); NaN of none."""
+    """Return the mean of values (N,); NaN without values."""
     return float(np.mean(values)) if values.size else math.nan
 
 
 def root_mean_square(values: Floats) -> float:
-    """Return the root mean square of values (N,); NaN of none."""
+    """Return the root mean square of values (N,); NaN without values."""
     return math.sqrt(mean(values**2))
 
 
 def way_m(robot: Floats) -> float:
-    """Return the length [m] of a way (T, 2 or more), whose first columns are x and y."""
+    """Return the length [m] of a path (T, 2 or more), whose first columns are x and y."""
     return float(np.sum(np.hypot(*np.diff(robot[:, :2], axis=0).T)))
 
 
 Row = tuple[str, float, str, str]  # name, value, unit, explanation
 
-# Records hold shares and radians.
+# Records have shares and radians, tables percent and degrees.
 _IN_UNIT: Final[Mapping[str, Callable[[float], float]]] = {
     "%": lambda share: 100.0 * share,
     "deg": math.degrees,
@@ -148,7 +148,7 @@ _IN_UNIT: Final[Mapping[str, Callable[[float], float]]] = {
 
 @dataclass(frozen=True, slots=True)
 class Metric:
-    """What one figure is called in tables, its unit there, and what it means."""
+    """Name, unit and meaning of a metric in tables."""
 
     name: str
     unit: str
@@ -156,34 +156,34 @@ class Metric:
 
     @property
     def label(self) -> str:
-        """Its name with its unit."""
+        """Name with unit."""
         return f"{self.name}, {self.unit}" if self.unit else self.name
 
 
 def metric(name: str, unit: str, meaning: str) -> Any:
-    """Declare a figure as a field of a `ScoreRecord`."""
+    """Declare a metric as a field of a `ScoreRecord`."""
     return field(metadata={"metric": Metric(name, unit, meaning)})
 
 
 class ScoreRecord:
-    """A dataclass whose fields are all declared by `metric`; NaN is what is not defined."""
+    """A dataclass whose fields are all declared by `metric`; NaN means undefined."""
 
     __slots__ = ()
 
     @classmethod
     def metrics(cls) -> dict[str, Metric]:
-        """Return the figures by their key in metrics.json."""
+        """Return the metrics by their key in metrics.json."""
         return {one.name: one.metadata["metric"] for one in fields(cls)}  # type: ignore[arg-type]
 
     def rows(self) -> list[Row]:
-        """Return the figures as table rows: name, value, unit, explanation."""
+        """Return the metrics as table rows: name, value, unit, explanation."""
         return [
             (one.name, _IN_UNIT.get(one.unit, float)(getattr(self, key)), one.unit, one.meaning)
             for key, one in self.metrics().items()
         ]
 
     def to_json(self) -> dict[str, Any]:
-        """Return the figures as JSON can hold them: None for what is undefined."""
+        """Return the metrics for JSON, with None for undefined values."""
         figures: dict[str, Any] = asdict(self)  # type: ignore[call-overload]
         return {
             key: None if isinstance(value, float) and math.isnan(value) else value

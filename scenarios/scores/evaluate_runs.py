@@ -1,6 +1,6 @@
 """Score finished runs from the files in their folders: in camera images, and on the floor.
 
-Reference boxes are chosen by camera, and by what the tracker's boxes enclose: torsos or whole people.
+Reference boxes depend on the camera, and on what the tracker's boxes enclose: torsos or whole people.
 """
 
 import math
@@ -40,40 +40,40 @@ from peopleboy.tracker.footage.footage_truth import GivenTruth, find_truth, load
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.trackers import TRACKERS
 
-# The way from the width of the truth's boxes to that of those of the other kind from which on boxes are such;
-# trackers of torsos come to 0.45 of it in 210 runs, and to 0.52 if their ellipses are wide.
+# Position between the widths of both kinds of ground truth boxes from which boxes count as the other kind.
+# Trackers of torsos reach 0.45 in 210 runs, and 0.52 with wide ellipses.
 _NEAR_OTHER: Final = 0.75
-_LEAST_APART: Final = 0.1  # of the widths' logarithms; else nobody can tell
-_WIDEST: Final = 2.0  # widths of whole people, than which no tracker's boxes are wider
+_LEAST_APART: Final = 0.1  # least difference of the log widths for a decision
+_WIDEST: Final = 2.0  # widths of whole people; boxes of a tracker are never wider
 CALLED: Final = {BoxKind.TORSO: "torsos", BoxKind.WHOLE: "whole people"}
 
 
 @dataclass(frozen=True, slots=True)
 class BoxReference:
-    """What boxes are held against.
+    """The ground truth boxes that tracks are scored against.
 
     Attributes:
-        camera: in whose images they are.
-        boxes: what the truth's are drawn round.
+        camera: camera of the images.
+        boxes: what the ground truth boxes enclose.
     """
 
     camera: str = THERMAL
     boxes: BoxKind = BoxKind.TORSO
 
     def __str__(self) -> str:
-        """Say it in words."""
+        """Return the reference as text."""
         return f"{CALLED[self.boxes]} in {self.camera} images"
 
     def to_json(self) -> dict[str, str]:
-        """Return it as metrics.json has it."""
+        """Return the reference as in metrics.json."""
         return {"camera": self.camera, "boxes": str(self.boxes)}
 
 
 def read_reference_boxes(folder: Path, by: BoxReference) -> tuple[TrueBoxes, TrackBoxes]:
-    """Read the truth of a run and the boxes that its tracker gave; in a panorama they go on over the seam.
+    """Read ground truth and tracked boxes of a run; in a panorama they extend across the seam.
 
     Raises:
-        BadInput: no boxes were given in images of this camera, or a file is spoilt.
+        BadInput: there are no boxes in images of this camera, or a file is unreadable.
     """
     text, table = truth_files(folder, by.camera)
     if by.camera == THERMAL:
@@ -89,15 +89,16 @@ def read_reference_boxes(folder: Path, by: BoxReference) -> tuple[TrueBoxes, Tra
 
 
 def kind_of_boxes(folder: Path, camera: str, tracker: str | None, said: BoxKind) -> BoxKind:
-    """Return what a tracker's boxes in a camera's images are drawn round: as it was said of the run.
+    """Return what a tracker's boxes in a camera's images enclose, as stated for the run.
 
-    Ours are said to be round torsos, and are so in flat images; in panoramas they are round whole people.
+    PeopleBoy's own trackers are stated to enclose torsos, which holds in planar images; in panoramas their
+    boxes enclose whole people.
 
     Args:
-        folder: of the run.
-        camera: its name.
-        tracker: its name; None for one that has no name.
-        said: of the run.
+        folder: folder of the run.
+        camera: name of the camera.
+        tracker: name of the tracker; None for a tracker without a name.
+        said: kind of boxes stated for the run.
     """
     if tracker not in TRACKERS.shipped or camera == THERMAL:
         return said
@@ -107,9 +108,9 @@ def kind_of_boxes(folder: Path, camera: str, tracker: str | None, said: BoxKind)
 
 
 def own_camera(folder: Path) -> str:
-    """Name the camera by which a run is scored: `thermal`, or the only one in whose images there are boxes.
+    """Return the camera by which a run is scored: `thermal`, or the only camera with boxes.
 
-    A tracker that gives no box in `thermal`, but places, is scored on the floor.
+    A tracker without boxes in `thermal`, but with floor positions, is scored on the floor.
     """
     cameras = boxed_cameras(folder)
     if THERMAL in cameras or len(cameras) != 1:
@@ -119,21 +120,21 @@ def own_camera(folder: Path) -> str:
 
 
 def boxed_cameras(folder: Path) -> tuple[str, ...]:
-    """Name the cameras in whose images the tracker of a run gave boxes."""
+    """Return the cameras in whose images the tracker of a run has boxes."""
     further = sorted((folder / "tracks").glob("*.txt"))
     named = [(THERMAL, folder / "tracks.txt"), *((path.stem, path) for path in further)]
     return tuple(camera for camera, path in named if path.is_file() and path.stat().st_size)
 
 
 def notes_on(folder: Path, by: BoxReference, truth: TrueBoxes, tracks: TrackBoxes) -> tuple[str, ...]:
-    """Return where the boxes are if not where they are looked for, and whether they are of another kind."""
+    """Return notes if the boxes are in another camera's images, or of another kind, than expected."""
     cameras = boxed_cameras(folder)
     if not cameras:
         return ()
     where = ", ".join(cameras)
     if by.camera not in cameras:
         return (f"all boxes are in images of {where}; evaluate RUN --camera {cameras[0]} scores them there",)
-    away = f"all boxes are in images of {where}, and scored there; behaviours see boxes in thermal alone"
+    away = f"all boxes are in images of {where}, and scored there; behaviours use thermal boxes only"
     return tuple(
         note
         for note in (away if THERMAL not in cameras else "", _of_other_kind(folder, by, truth, tracks))
@@ -142,7 +143,7 @@ def notes_on(folder: Path, by: BoxReference, truth: TrueBoxes, tracks: TrackBoxe
 
 
 def _of_other_kind(folder: Path, by: BoxReference, truth: TrueBoxes, tracks: TrackBoxes) -> str:
-    """Say so if boxes are wider than any people, or nearly as wide as the truth's of the other kind."""
+    """Return a note if boxes are wider than people, or about as wide as ground truth of the other kind."""
     other = BoxKind.TORSO if by.boxes is BoxKind.WHOLE else BoxKind.WHOLE
     there = true_boxes(*truth_files(folder, by.camera), other)
     given, wide, elsewhere = (width_per_height(rows) for rows in (tracks, truth, there))
@@ -151,26 +152,26 @@ def _of_other_kind(folder: Path, by: BoxReference, truth: TrueBoxes, tracks: Tra
     if given > _WIDEST * max(wide, elsewhere):
         return (
             f"boxes are {given:.2f} as wide as high, and whole people {max(wide, elsewhere):.2f}; "
-            "they must be left, top, width and height, and no corners"
+            "boxes must be left, top, width and height, not corners"
         )
     if abs(math.log(elsewhere / wide)) < _LEAST_APART:
         return ""
     if math.log(given / wide) / math.log(elsewhere / wide) < _NEAR_OTHER:
         return ""
     return (
-        f"boxes are {given:.2f} as wide as high, the truth's {CALLED[by.boxes]} {wide:.2f} and its "
-        f"{CALLED[other]} {elsewhere:.2f}; --boxes {other} holds them against those"
+        f"boxes are {given:.2f} as wide as high, ground truth {CALLED[by.boxes]} {wide:.2f}, "
+        f"{CALLED[other]} {elsewhere:.2f}; --boxes {other} scores them against {CALLED[other]}"
     )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ScoredPeople:
-    """How well people were found, and by what that was measured.
+    """Scores of tracking people, and their reference.
 
     Attributes:
-        scores: the figures.
-        by: what boxes were held against; None for squares on the floor, and for footage.
-        notes: what whoever reads the figures must know, a line each.
+        scores: the scores.
+        by: ground truth boxes of the scores; None for squares on the floor, and for footage.
+        notes: caveats of the scores, one line each.
     """
 
     scores: Scores
@@ -185,22 +186,21 @@ def score_people(
     by: BoxReference,
     min_visible: float = MIN_VISIBLE,
 ) -> ScoredPeople:
-    """Score the tracks of a run: their boxes in a camera's image, and where they say that people stand.
+    """Score the tracks of a run: their boxes in a camera's image, and their positions on the floor.
 
-    Boxes are scored in frames in which the camera took an image: in others there is no truth to hold them
-    against. Places come with the boxes of the thermal image. A tracker that gave no box of anybody there, but
-    places, is scored on the floor alone: everybody is a square there (`floor_squares`), and all figures of
-    boxes are those of squares.
+    Boxes are scored in frames with an image of the camera, as others have no ground truth. Positions are
+    scored together with thermal boxes. A tracker without thermal boxes, but with positions, is scored on the
+    floor alone: people and tracks are squares there (`floor_squares`), and all box metrics refer to squares.
 
     Args:
-        folder: of the run, with its tables.
-        held: `read_reference_boxes` of the run: who was there, and the boxes that the tracker gave.
-        frames: how many.
-        by: what boxes are held against.
-        min_visible: people of whom at most this fraction is visible do not count.
+        folder: folder of the run, with its tables.
+        held: `read_reference_boxes` of the run: ground truth boxes, and the tracker's boxes.
+        frames: number of frames.
+        by: the ground truth boxes to score against.
+        min_visible: people with at most this visible fraction are not counted.
 
     Raises:
-        BadInput: a table is missing or spoilt.
+        BadInput: a table is missing or unreadable.
     """
     truth, tracks = held
     if by.camera != THERMAL:
@@ -236,10 +236,10 @@ def evaluate_files(
     min_visible: float = MIN_VISIBLE,
     note: Callable[[str], None] = lambda _: None,
 ) -> Scores:
-    """Score MOTChallenge tracks against truth of any format that footage comes with.
+    """Score MOTChallenge tracks against ground truth in any supported format of footage.
 
-    People of whom no more than min_visible is seen do not count. Figures that need everybody are undefined
-    where the truth has one person alone. What was taken as something else than it is goes to `note`.
+    People with at most the visible fraction min_visible are not counted. Metrics that need all people are
+    undefined if the ground truth annotates one person only. `note` receives assumptions about the input.
     """
     given = load_truth(truth, None)
     for text in given.notes:
@@ -249,7 +249,7 @@ def evaluate_files(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScoreOptions:
-    """Which people and boxes of runs are scored; thermal boxes come with positions on the floor."""
+    """People and boxes that are scored; positions on the floor are scored with thermal boxes."""
 
     min_visible: Annotated[
         float,
@@ -310,14 +310,14 @@ def _evaluate_texts(folder: Path, frames: int, options: ScoreOptions) -> ScoredP
     """Score a run of footage, which has one camera and boxes of one kind."""
     for option, value in (("--camera", options.camera), ("--boxes", options.boxes)):
         if value is not None and value != THERMAL:
-            raise BadInput(f"{option} {value}: {folder} has no tables of a scenario; leave it out")
+            raise BadInput(f"{option} {value}: {folder} has no scenario tables; omit the option")
     return ScoredPeople(_score(*_read_texts(folder, frames), frames, options.min_visible))
 
 
 def _read_texts(folder: Path, frames: int) -> tuple[GivenTruth, TrackBoxes]:
     truth = find_truth(folder)
     if truth is None:
-        raise BadInput(f"{folder}: has no truth to score against; give --truth with --tracks")
+        raise BadInput(f"{folder}: has no ground truth; give --truth with --tracks")
     given, found = load_truth(truth, None), read_tracks(folder / "tracks.txt")
     check_end(given.truth, truth, frames)
     check_end(found, folder / "tracks.txt", frames)
@@ -326,7 +326,7 @@ def _read_texts(folder: Path, frames: int) -> tuple[GivenTruth, TrackBoxes]:
 
 
 def _said(folder: Path, camera: str, about: Mapping[str, Any]) -> BoxKind:
-    """What a run was scored by; runs of earlier versions do not say so, and had torsos."""
+    """Return the kind of boxes a run was scored with; earlier versions do not state it, and used torsos."""
     said = about.get("boxes", BoxKind.TORSO)
     if said not in set(BoxKind):
         raise BadInput(

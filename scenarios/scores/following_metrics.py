@@ -1,4 +1,4 @@
-"""Score how well one person was followed: found, kept in sight, kept at the distance, never touched."""
+"""Score person following: finding the person, tracking, distance and contacts."""
 
 import math
 from collections.abc import Iterable
@@ -33,15 +33,15 @@ from peopleboy.tracker.track import Status, Track
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FollowingTask:
-    """What the robot was asked to do; distances are between the origins of robot and person, on the floor.
+    """The following task; distances are between the origins of robot and person, on the floor.
 
     Attributes:
         keep_m: [m] distance to keep; at 3.9 a person of 1.75 m is 0.58 image heights tall in a level camera
-            of 44 degrees that sits 0.14 m before the robot's origin.
-        within_m: [m] by which a distance may be off on either side, and counts as kept.
+            of 44 degrees, 0.14 m in front of the robot's origin.
+        within_m: [m] tolerance of the distance on either side.
         facing_rad: [rad] bearing within which the robot faces the person.
-        lost_s: [s] a person out of track for this long is lost; shorter gaps are drop-outs.
-        reached_s: [s] last part of the run, which says whether the person was followed to the end.
+        lost_s: [s] a person without a track for this long is lost; shorter gaps are drop-outs.
+        reached_s: [s] last part of the run, which decides whether the person was followed to the end.
     """
 
     keep_m: float = 3.9
@@ -53,11 +53,11 @@ class FollowingTask:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FollowingScore(ScoreRecord):
-    """Scores of one run; shares and means are over the frames with the person there, from the first track on.
+    """Scores of one run; shares and means cover frames with the person present, from the first track on.
 
     Shares are 0..1, angles [rad]. `min_distance_m` and `collisions` are over the whole run. A period without
-    track counts as lost if it takes `lost_s` or longer. `path_efficiency` ends with the first time in the
-    band. `wrong_person_s` is NaN if it is not known whom the robot follows.
+    a track counts as lost if it takes `lost_s` or longer. `path_efficiency` covers the time until the person
+    is first in the band. `wrong_person_s` is NaN if the followed person is unknown.
     """
 
     found: bool = metric("found", "", "1 if the person was ever tracked")
@@ -71,7 +71,7 @@ class FollowingScore(ScoreRecord):
     min_distance_m: float = metric(
         "nearest", "m", "smallest distance to the person to follow, centre to centre"
     )
-    collisions: int = metric("collisions", "", "contacts that began in the run")
+    collisions: int = metric("collisions", "", "number of contacts")
     times_lost: int = metric("times lost", "", "periods without a track since found")
     longest_lost_s: float = metric("longest lost", "s", "longest period without a track since found")
     followed_to_end: bool = metric("to the end", "", "1 if the right person was followed at the end")
@@ -82,11 +82,11 @@ class FollowingScore(ScoreRecord):
 
 
 def score_following(run: DriveRecord, task: FollowingTask | None = None) -> FollowingScore:
-    """Score one run in which the robot was to follow one person.
+    """Score one run of person following.
 
     Args:
-        run: what happened.
-        task: what was asked.
+        run: record of the drive.
+        task: the following task.
     """
     task = FollowingTask() if task is None else task
     time_s, is_tracked = run.time_s, run.is_tracked
@@ -95,7 +95,7 @@ def score_following(run: DriveRecord, task: FollowingTask | None = None) -> Foll
     is_there = np.isfinite(distance)
     since = is_there & (np.arange(len(time_s)) >= first)
     nearest_m, farthest_m = task.keep_m - task.within_m, task.keep_m + task.within_m
-    is_kept = (distance >= nearest_m) & (distance <= farthest_m)  # NaN is in no band
+    is_kept = (distance >= nearest_m) & (distance <= farthest_m)  # NaN compares as outside the band
     is_facing = np.abs(bearing) < task.facing_rad
     error = np.abs(distance[since] - task.keep_m)
     lost = _periods(time_s, since & ~is_tracked)
@@ -121,7 +121,7 @@ def score_following(run: DriveRecord, task: FollowingTask | None = None) -> Foll
 
 
 def _is_at_end(run: DriveRecord, last_s: float) -> bool:
-    """Return whether the person was tracked for most of the last part, and nobody else followed."""
+    """Return whether the person was tracked for most of the last part, and no other person was followed."""
     last = run.time_s >= run.time_s[-1] - last_s
     is_there = last & np.isfinite(run.target[:, 0])
     is_wrong = run.is_wrong is not None and bool(run.is_wrong[last].any())
@@ -129,7 +129,7 @@ def _is_at_end(run: DriveRecord, last_s: float) -> bool:
 
 
 def _path_efficiency(robot: Floats, is_kept: Flags) -> float:
-    """Give straight way / way driven until the person is first in the band; NaN if no way was to be made."""
+    """Return straight / driven distance until first in the band; NaN if never, or there from the start."""
     if not is_kept.any():
         return math.nan
     way = robot[: int(np.argmax(is_kept)) + 1, :2]
@@ -138,7 +138,7 @@ def _path_efficiency(robot: Floats, is_kept: Flags) -> float:
 
 
 def _changes(track: NDArray[np.int64]) -> int:
-    """Count how often the number on the person is another than the last one before."""
+    """Count the changes of the number of the person's track."""
     return int(np.sum(np.diff(track[track > 0]) != 0))
 
 
@@ -150,19 +150,19 @@ def _person_from_robot(robot: Floats, person: Floats) -> tuple[Floats, Floats]:
 
 
 def _periods(time_s: Floats, flags: Flags) -> Floats:
-    """Return the length [s] of each run of true values, up to the next frame or the end: (N,)."""
+    """Return the length [s] of each span of true values, up to the next frame or the end: (N,)."""
     edges = np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return time_s[np.minimum(ends, len(time_s) - 1)] - time_s[starts]
 
 
-# The scores of following one person, instant by instant, in a run and in an environment alike.
+# Person following, instant by instant, for runs and environments.
 
-_LEAST_IOU = 0.5  # a track lies on a person whom it overlaps by more
+_LEAST_IOU = 0.5  # a track with a higher overlap is on the person
 
 
 class Spot(NamedTuple):
-    """Where a person truly is.
+    """True position of a person.
 
     Attributes:
         box: left, top, width, height [px] in the thermal image.
@@ -174,11 +174,11 @@ class Spot(NamedTuple):
 
 
 def tracks_on_target(tick: Tick, boxes: BoxKind = BoxKind.TORSO, before: int = 0) -> tuple[int, bool]:
-    """Return the number of the track on the person to follow, 0 for none; and whether another is followed.
+    """Return the track number of the person to follow, 0 for none; and whether another one is followed.
 
     Args:
         tick: the instant.
-        boxes: what the tracker's boxes are drawn round.
+        boxes: what the tracker's boxes enclose.
         before: see `track_on`.
     """
     robot, is_whole = tick.truth.robot, boxes is BoxKind.WHOLE
@@ -191,13 +191,13 @@ def tracks_on_target(tick: Tick, boxes: BoxKind = BoxKind.TORSO, before: int = 0
 
 
 def track_on(spot: Spot | None, tracks: Iterable[Track], before: int = 0) -> int:
-    """Return the number of the track that lies on a person, 0 if none does well enough.
+    """Return the number of the track on a person, 0 if none overlaps enough.
 
     Args:
-        spot: where the person is.
-        tracks: of the instant.
-        before: the track that lay there last, 0 for none: as long as it does, no other is taken, however
-            well that one lies.
+        spot: true position of the person.
+        tracks: tracks of the instant.
+        before: the person's last track, 0 for none: it is kept as long as it is on the person, even if
+            another one overlaps more.
     """
     if spot is None:
         return 0
@@ -210,7 +210,7 @@ def track_on(spot: Spot | None, tracks: Iterable[Track], before: int = 0) -> int
 
 
 def _is_wrong(spots: dict[int, Spot], tick: Tick) -> bool:
-    """Return whether the track that the robot follows lies on another person than the person to follow."""
+    """Return whether the track that the robot follows is on another person than the person to follow."""
     for track in _sure(tick.tracks):
         if track.id == tick.following:
             overlaps = [(_overlap(track, spot), number) for number, spot in spots.items()]
@@ -224,7 +224,7 @@ def _sure(tracks: Iterable[Track]) -> Iterable[Track]:
 
 
 def _overlap(track: Track, spot: Spot) -> float:
-    """Return how well a track lies on a person, in 0..1: in the thermal image, or else on the floor."""
+    """Return the overlap of a track with a person, 0..1: in the thermal image, or else on the floor."""
     if THERMAL in track.boxes:
         return float(iou(np.array(track.boxes[THERMAL]), np.array(spot.box)))
     if track.place is None:
@@ -234,9 +234,9 @@ def _overlap(track: Track, spot: Spot) -> float:
 
 
 def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:
-    """Turn the height [image heights] at which a person is to be seen into the distance that shows it so.
+    """Convert the desired height of a person [image heights] to a following distance.
 
-    It is the first person who is to be followed; where there is nobody, the distance is the usual one.
+    The first person is followed; without people, the distance is the default one.
     """
     if not config.people:
         return FollowingTask()

@@ -1,4 +1,4 @@
-"""Gather the scores of a run, people and driving, and summarise them in a sentence or two."""
+"""Collect the scores of a run, tracking and driving, and summarise them in a sentence or two."""
 
 import math
 from collections.abc import Mapping
@@ -58,7 +58,7 @@ class RunScores:
         return f"RunScores({headline(self)!r})"
 
     def to_json(self) -> dict[str, Any]:
-        """Return all figures as JSON can hold them: None for what is undefined."""
+        """Return all metrics for JSON, with None for undefined values."""
         groups: dict[str, Any] = {} if self.by is None else {"scored_by": self.by.to_json()}
         groups |= to_json(self.people)
         drives = {"following": self.following, "corridor": self.corridor, "comfort": self.comfort}
@@ -81,9 +81,9 @@ def score_run(
     boxes: BoxKind = BoxKind.TORSO,
     tracker: str | None = None,
 ) -> RunScores:
-    """Score a run from the truth and tracks in its folder.
+    """Score a run from the ground truth and tracks in its folder.
 
-    `boxes` says what the tracker's are drawn round; with its name it is known of ours (`kind_of_boxes`).
+    `boxes` is what the tracker's boxes enclose; see `kind_of_boxes` for PeopleBoy's own trackers.
     """
 
     def scored(camera: str) -> ScoredPeople:
@@ -110,7 +110,7 @@ _NEAR: Final = (
 
 
 def headline(scores: RunScores) -> str:
-    """Return how well people were found, and how well the robot did what it was to do."""
+    """Summarise detection of people, and the task of the robot."""
     parts = [_people(scores.people)]
     if scores.following is not None:
         parts.append(_following(scores.following))
@@ -123,8 +123,8 @@ def _people(scores: Scores) -> str:
     counts, thesis, mot = scores.counts, scores.thesis, scores.mot
     false = _some(counts.false_tracks, "false track")
     if not counts.targets:
-        return f"Nobody was to be found in {counts.frames} frames, which is who is seen {_NEAR}; {false}."
-    right = "no box given" if math.isnan(thesis.cp) else f"{_percent(thesis.cp)} of the boxes given are right"
+        return f"No person was due to be found in {counts.frames} frames (visible people {_NEAR}); {false}."
+    right = "there are no boxes" if math.isnan(thesis.cp) else f"{_percent(thesis.cp)} of boxes are correct"
     return (
         f"People were found in {_percent(thesis.cr)} of {counts.targets} cases, {right}; "
         f"{_some(mot.clear.switches, 'identity switch', 'es')}, {false}."
@@ -135,7 +135,7 @@ def _following(score: FollowingScore) -> str:
     if not score.found:
         return "The person to follow was never found."
     end = "to the end" if score.followed_to_end else "but not to the end"
-    astray = f"the robot went after somebody else for {score.wrong_person_s:.1f} s; "
+    astray = f"the robot followed another person for {score.wrong_person_s:.1f} s; "
     return (
         f"The person to follow was found after {score.time_to_find_s:.1f} s and tracked for "
         f"{_percent(100.0 * score.followed)} of the time since, {end}; "
@@ -146,12 +146,12 @@ def _following(score: FollowingScore) -> str:
 def _corridor(score: CorridorScore) -> str:
     way = f"{score.way_m:.1f} m of corridor at {score.mean_speed_m_s:.2f} m/s"
     if not math.isnan(score.lateral_rms_m):
-        way += f", {score.lateral_rms_m:.2f} m RMS off the middle"
+        way += f", with a lateral error of {score.lateral_rms_m:.2f} m RMS"
     return f"The robot drove {way}; {_some(score.contacts, 'contact')}."
 
 
 def _percent(value: float) -> str:
-    """Whole percents, of which 100 means all and 0 none."""
+    """Format whole percents, so that 100 means all and 0 none."""
     return f"{min(max(round(value), math.ceil(value > 0)), 99 if value < 100 else 100)} %"
 
 

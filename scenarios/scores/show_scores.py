@@ -1,4 +1,4 @@
-"""Tables of scores for the terminal."""
+"""Print tables of scores on the terminal."""
 
 import math
 import sys
@@ -17,7 +17,7 @@ from peopleboy.wording import counted
 
 
 def print_scores(scores: Scores, who: str = "people") -> None:
-    """Print every figure of one run, or of several taken together, that the truth can tell."""
+    """Print the metrics of one run, or of several combined, that the ground truth defines."""
     if scores.counts.partly_annotated:
         _console().print(f"{_single_person(scores)}\n", soft_wrap=True)
     table = _table(who, "figure", "value", "meaning")
@@ -29,7 +29,7 @@ def print_scores(scores: Scores, who: str = "people") -> None:
 
 
 def print_drive(title: str, rows: Sequence[Row]) -> None:
-    """Print how the robot drove: how well one person or corridors were followed, or people's comfort."""
+    """Print driving metrics: of person following, corridor following or comfort."""
     table = _table(title, "figure", "value", "meaning")
     for name, value, unit, meaning in rows:
         table.add_row(name, _number(value, unit), meaning)
@@ -37,7 +37,7 @@ def print_drive(title: str, rows: Sequence[Row]) -> None:
 
 
 def print_comfort(by_tracker: Mapping[str, ComfortScore]) -> None:
-    """Print how comfortable people were, means over the runs of each tracker; nothing if none has any."""
+    """Print mean comfort metrics over the runs of each tracker; nothing if there are none."""
     if not by_tracker:
         return
     table = _table("comfort, means over runs", "figure", *by_tracker, "meaning")
@@ -48,12 +48,12 @@ def print_comfort(by_tracker: Mapping[str, ComfortScore]) -> None:
 
 
 def print_runs(groups: Groups, who: str = "people", note: Callable[[str], None] = lambda _: None) -> None:
-    """Print every figure of runs: those of one tracker together, those of several side by side.
+    """Print the metrics of runs: combined for one tracker, side by side for several.
 
     Args:
         groups: the runs by their trackers.
-        who: is to be found, in the tables' titles.
-        note: receives what readers of the figures must know of a tracker, once for all its runs.
+        who: name of the targets in the tables' titles.
+        note: called with the caveats of a tracker's metrics, once for all its runs.
     """
     if len(groups) > 1:
         _print_beside(groups, who)
@@ -69,7 +69,7 @@ def print_runs(groups: Groups, who: str = "people", note: Callable[[str], None] 
 
 
 def _print_spread(tracker: str, sequences: Sequence[Scores], who: str) -> None:
-    """Print figures over several runs: of all frames together, and mean and deviation over runs."""
+    """Print metrics of several runs: of all frames combined, and mean and deviation over runs."""
     title = f"{who}, {len(sequences)} runs of {tracker}"
     table = _table(title, "figure", "all frames", "mean of runs", "deviation", "meaning")
     whole = combine(sequences)
@@ -84,7 +84,7 @@ def _print_spread(tracker: str, sequences: Sequence[Scores], who: str) -> None:
 
 
 def _print_beside(groups: Groups, who: str) -> None:
-    """Print figures of each tracker's runs, and how trackers differ over scenes that they share."""
+    """Print the metrics of each tracker's runs, and the differences over scenes that trackers share."""
     wholes = [combine([run.scores for run in runs]) for runs in groups.values()]
     compared = differences(groups)
     table = _table(
@@ -107,20 +107,18 @@ def _print_beside(groups: Groups, who: str) -> None:
 def _how_they_differ(compared: Sequence[Difference]) -> str:
     pairs = max(one.pairs for one in compared)
     if pairs == 0:
-        return (
-            "No two runs have the same scenario and seed: how the trackers differ in one scene is not known."
-        )
+        return "No two runs have the same scenario and seed, so differences between trackers are unknown."
     text = "A difference is the mean over runs of the same scenario and seed"
     return f"{text}, with its 95 % bootstrap interval." if pairs > 1 else f"{text}; one pair has no interval."
 
 
 def _by_what(groups: Groups) -> str:
-    """Describe what each tracker's boxes are held against, if it is not the same for all."""
+    """Describe the ground truth boxes of each tracker, if they are not the same for all."""
     held = {tracker: {str(run.by) for run in runs if run.by} for tracker, runs in groups.items()}
     if len(set().union(*held.values())) < 2:
         return ""
     references = [f"{tracker} against {' and '.join(sorted(by))}" for tracker, by in held.items() if by]
-    return f" Boxes are held by their own truth: {'; '.join(references)}."
+    return f" Trackers are scored against different ground truth boxes: {'; '.join(references)}."
 
 
 def _interval(interval: Interval, unit: str) -> str:
@@ -131,12 +129,12 @@ def _interval(interval: Interval, unit: str) -> str:
 
 
 def _single_person(scores: Scores) -> str:
-    """Return how one person was kept who alone is annotated."""
+    """Summarise the tracking of the only annotated person."""
     mot, counts = scores.mot, scores.counts
     ids = f"{counts.true_tracks} {'id is' if counts.true_tracks == 1 else 'ids are'}"
     return (
-        f"One id keeps the annotated person in {_number(mot.identity.idr, '%')} of its frames (IoU 0.5), "
-        f"any in {_number(scores.thesis.cr, '%')}; {ids} on it at some time."
+        f"One id is on the annotated person in {_number(mot.identity.idr, '%')} of its frames (IoU 0.5), "
+        f"any id in {_number(scores.thesis.cr, '%')}; {ids} on the person at some time."
     )
 
 
@@ -145,8 +143,8 @@ def _tell_unknown(scores: Scores) -> None:
         return
     unknown = [row.figure.name for row in rows(scores) if row.figure.name in NEED_EVERYBODY]
     _console().print(
-        f"Unknown: {', '.join(unknown)}. One person alone is annotated, so that nobody can say whether "
-        "boxes elsewhere are wrong.\n"
+        f"Unknown: {', '.join(unknown)}. Only one person is annotated, so boxes elsewhere may be right "
+        "or wrong.\n"
     )
 
 

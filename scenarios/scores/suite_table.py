@@ -1,10 +1,10 @@
-"""What a data set holds, counted as in the thesis's table 3.1.
+"""Count the content of a data set as in the thesis's table 3.1.
 
-A *detection* is a counted person (3..10 m away) of whom something is visible, in one frame: what the scores
-call a target. A *track* is a longest run of frames in which one person is counted and in the image, hidden or
-not; gaps of up to `GAP_S`, such as an arm that swings over the border, do not end it. An *occlusion* is a
-detection of which as much is hidden as starts an occlusion in the event log. The thesis does not define the
-word, but 1130 occlusions among 42 tracks can only be occluded detections.
+A *detection* is a counted person (3..10 m away) who is at least partly visible, in one frame: a target of the
+scores. A *track* is a maximal span of frames in which one person is counted and in the image, hidden or not;
+gaps of up to `GAP_S`, such as an arm that swings over the border, do not end it. An *occlusion* is a
+detection with a hidden share that starts an occlusion in the event log. The thesis does not define the word,
+but 1130 occlusions among 42 tracks can only be occluded detections.
 """
 
 from collections.abc import Iterable
@@ -28,8 +28,8 @@ class Content:
     Attributes:
         frames_with_persons: frames with a detection.
         frames: all frames.
-        tracks, detections, occlusions: as the module says.
-        at_once: most detections in a frame.
+        tracks, detections, occlusions: as defined in the module.
+        at_once: maximum number of detections in a frame.
     """
 
     frames_with_persons: int
@@ -58,12 +58,12 @@ THESIS = {
 
 
 def count(people: pa.Table, frames: int, rate_hz: float) -> Content:
-    """Count one run.
+    """Count the content of one run.
 
     Args:
-        people: its truth, as `peopleboy.scenarios.run_folder.run_tables.TRUTH`.
-        frames: how many it has.
-        rate_hz: frames a second.
+        people: its ground truth, as `peopleboy.scenarios.run_folder.run_tables.TRUTH`.
+        frames: number of frames.
+        rate_hz: frames per second.
     """
     frame, person = people["frame"].to_numpy(), people["id"].to_numpy()
     counted = people["is_counted"].to_numpy(zero_copy_only=False)
@@ -83,12 +83,12 @@ def count(people: pa.Table, frames: int, rate_hz: float) -> Content:
 
 
 def add_up(contents: Iterable[Content]) -> Content:
-    """Take runs together: sums, and of `at_once` the largest."""
+    """Combine runs: sums, and for `at_once` the maximum."""
     rows = np.array([astuple(content) for content in contents])
     totals = [*rows[:, :-1].sum(axis=0), rows[:, -1].max()]
     return Content(**{field.name: int(total) for field, total in zip(fields(Content), totals, strict=True)})
 
 
 def _runs(frames: NDArray[np.int64], gap: int) -> int:
-    """Count longest runs of rising frames, in which up to `gap` frames in a row may be missing."""
+    """Count maximal spans of ascending frames, in which gaps of up to `gap` frames are allowed."""
     return int((np.diff(frames) > gap + 1).sum()) + 1 if len(frames) else 0

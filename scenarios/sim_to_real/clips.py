@@ -1,4 +1,4 @@
-"""Thermal clips with boxes of people, rendered or real, as folders hold them."""
+"""Read thermal clips with boxes of people, rendered or real, and cut patches from them."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -20,7 +20,7 @@ from peopleboy.tracker.footage.read_picture import read_picture, size_of
 Grey = NDArray[np.uint8]
 
 ROWS: Final = 192
-"""Height to which all pictures are shrunk, so that a pixel is the same share of the view."""
+"""Height to which all pictures are shrunk, so that a pixel covers the same share of the field of view."""
 
 _BESIDE: Final = ("gt.txt", *NAMES)
 _VISIBLE: Final = 0.7
@@ -28,13 +28,13 @@ _VISIBLE: Final = 0.7
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClipFrame:
-    """One picture, the next one, and who is there.
+    """One picture, the next one, and the people in it.
 
     Attributes:
         grey: (H, W) uint8, as it was recorded.
-        later: (H, W) uint8, the picture after it; None behind the last one.
-        boxes: (N, 4) [px] left, top, width, height of everybody.
-        clear: (N,) whether that one is mostly visible, and inside the picture.
+        later: (H, W) uint8, the next picture; None after the last one.
+        boxes: (N, 4) [px] left, top, width, height of all people.
+        clear: (N,) whether each person is mostly visible, and inside the picture.
     """
 
     grey: Grey
@@ -45,13 +45,13 @@ class ClipFrame:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Clip:
-    """A row of pictures with truth.
+    """A sequence of pictures with ground truth.
 
     Attributes:
-        name: its folder's.
-        scene: what it shows; clips of one scene are never in training and in test at once.
-        paths: of the pictures.
-        truth: boxes, by frame from 1.
+        name: name of its folder.
+        scene: the scene; clips of one scene are never split between training and test.
+        paths: files of the pictures.
+        truth: ground truth boxes, by frame from 1.
     """
 
     name: str
@@ -60,10 +60,10 @@ class Clip:
     truth: TrueBoxes
 
     def moments(self, count: int) -> Iterator[ClipFrame]:
-        """Read some pictures, spread evenly.
+        """Yield some pictures, spread evenly over the clip.
 
         Raises:
-            BadInput: a picture that is no 8-bit grey one, too small, or of another size than the first.
+            BadInput: a picture is not 8-bit grey, is too small, or has another size than the first.
         """
         first: Grey | None = None
         chosen = np.linspace(0, max(len(self.paths) - 2, 0), min(count, len(self.paths)))
@@ -72,7 +72,7 @@ class Clip:
             first = grey if first is None else first
             if grey.shape != first.shape:
                 raise BadInput(
-                    f"{self.paths[index]}: all pictures must have one size, {size_of(first)} as the first, "
+                    f"{self.paths[index]}: all pictures must have the size of the first, {size_of(first)}, "
                     f"got {size_of(grey)}"
                 )
             later = _read(self.paths[index + 1]) if index + 1 < len(self.paths) else None
@@ -83,10 +83,10 @@ class Clip:
 
 
 def find_clips(folders: Sequence[Path]) -> list[Clip]:
-    """Find the clips of these folders: clips, runs, or sets of them.
+    """Find the clips in these folders: clips, runs, or sets of them.
 
     Raises:
-        BadInput: a folder without pictures, without truth, or with a truth that cannot be read.
+        BadInput: a folder has no pictures, no ground truth, or an unreadable one.
     """
     return [clip for folder in folders for home in _homes(folder) for clip in (_clip(home),)]
 
@@ -98,13 +98,13 @@ def _homes(folder: Path) -> list[Path]:
         return [folder]
     within = [path for path in sorted(folder.iterdir()) if path.is_dir() and _pictures_of(path) is not None]
     if not within:
-        frames = "; `peopleboy run --frames` writes some" if (folder / "run.json").is_file() else ""
-        raise BadInput(f"{folder}: has no pictures, neither in thermal/ nor in folders with thermal/{frames}")
+        frames = "; `peopleboy run --frames` writes them" if (folder / "run.json").is_file() else ""
+        raise BadInput(f"{folder}: has no pictures in thermal/, nor any folders with thermal/{frames}")
     return within
 
 
 def _pictures_of(folder: Path) -> Path | None:
-    """Return the folder inside that has the pictures; its own ones only where it is no run."""
+    """Return the folder with the pictures; None without any. A run never has pictures at its top level."""
     inner = [folder / name for name in reversed(INNER) if (folder / name).is_dir()]
     if not (folder / "run.json").is_file():
         inner.append(folder)
@@ -116,14 +116,14 @@ def _clip(folder: Path) -> Clip:
     assert home is not None
     truth = next((folder / name for name in _BESIDE if (folder / name).is_file()), None)
     if truth is None:
-        raise BadInput(f"{folder}: has no boxes of people; wanted is one of {', '.join(_BESIDE)}")
+        raise BadInput(f"{folder}: has no boxes of people; add one of {', '.join(_BESIDE)}")
     film = PictureFolder(home, folder.resolve().name)
     given = load_truth(truth, film.expected, film.numbers)
     return Clip(film.name, _scene(folder), tuple(film.paths), given.truth)
 
 
 def _scene(folder: Path) -> str:
-    """Name what a clip shows: of runs their scenario, whatever the seed."""
+    """Return the scene of a clip: the scenario for a run, whatever its seed, else the folder."""
     try:
         return str(json.loads((folder / "run.json").read_text(encoding="utf-8"))["scenario"])
     except (OSError, ValueError, KeyError):
@@ -134,10 +134,10 @@ def _read(path: Path) -> Grey:
     picture = read_picture(path, [])
     if picture.ndim == 3:
         if (picture != picture[..., :1]).any():
-            raise BadInput(f"{path}: must be grey, got a picture in colours")
+            raise BadInput(f"{path}: must be grey, got a colour picture")
         picture = picture[..., 0]
     if picture.dtype != np.uint8:
-        raise BadInput(f"{path}: must have 8 bits, as a robot's thermal/ has, got {picture.dtype}")
+        raise BadInput(f"{path}: must have 8 bits, as in thermal/ of a run, got {picture.dtype}")
     if min(picture.shape) < ROWS:
         raise BadInput(f"{path}: must be at least {ROWS} x {ROWS} pixels, got {size_of(picture)}")
     return np.ascontiguousarray(picture)
@@ -151,24 +151,24 @@ def _is_inside(boxes: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np
     return inside
 
 
-# Patches of 32 x 32 pixels at equal scale: anywhere, of background, and of people.
+# Patches of 32 x 32 pixels at equal scale: from anywhere, from the background, and of people.
 
 SIDE: Final = 32
 """Rows and columns of a patch."""
 
-_ROOM: Final = 1.25  # sides of the square round a person, in heights of the person
+_ROOM: Final = 1.25  # side of the square around a person, in heights of the person
 _TRIES: Final = 12
 
 
 def shrunk(grey: Grey) -> Grey:
-    """Shrink a picture (H, W) to `ROWS` rows; every pixel becomes the mean of those that it covers."""
+    """Shrink a picture (H, W) to `ROWS` rows; every pixel is the mean of the pixels that it covers."""
     factor = ROWS / grey.shape[0]
     width = round(grey.shape[1] * factor)
     return np.asarray(cv2.resize(grey, (width, ROWS), interpolation=cv2.INTER_AREA), np.uint8)
 
 
 def covered(shape: tuple[int, ...], boxes: NDArray[np.float64], grown: float = 0.15) -> NDArray[np.bool_]:
-    """Mark the pixels (H, W) in boxes (N, 4), each grown by a share of its size on every side."""
+    """Return a mask (H, W) of boxes (N, 4), each enlarged by a share of its size on every side."""
     mask = np.zeros(shape[:2], bool)
     for left, top, width, height in boxes:
         x0, y0 = left - grown * width, top - grown * height
@@ -178,7 +178,7 @@ def covered(shape: tuple[int, ...], boxes: NDArray[np.float64], grown: float = 0
 
 
 def random_patches(moment: ClipFrame, count: int, rng: np.random.Generator) -> list[Grey]:
-    """Cut patches at random places of the shrunken picture, whatever they show."""
+    """Cut patches at random places of the shrunken picture."""
     picture = shrunk(moment.grey)
     return [_cut(picture, *_corner(picture, rng)) for _ in range(count)]
 
@@ -186,7 +186,7 @@ def random_patches(moment: ClipFrame, count: int, rng: np.random.Generator) -> l
 def background_patches(
     moment: ClipFrame, count: int, rng: np.random.Generator, side: int = SIDE
 ) -> list[Grey]:
-    """Cut patches of the shrunken picture that reach into nobody's box; fewer where there is no room."""
+    """Cut patches of the shrunken picture that overlap no person's box; fewer if there is no room."""
     picture = shrunk(moment.grey)
     return [_cut(picture, *corner, side) for corner in background_corners(moment, count, rng, side)]
 
@@ -194,7 +194,7 @@ def background_patches(
 def background_corners(
     moment: ClipFrame, count: int, rng: np.random.Generator, side: int
 ) -> list[tuple[int, int]]:
-    """Choose rows and columns of such patches."""
+    """Choose rows and columns of background patches."""
     factor = ROWS / moment.grey.shape[0]
     picture = shrunk(moment.grey)
     taken = covered(picture.shape, moment.boxes * factor)
@@ -207,7 +207,7 @@ def background_corners(
 
 
 def person_patches(moment: ClipFrame) -> list[Grey]:
-    """Cut a square round everybody who is clear, shrunk so that each is as high; nobody is enlarged."""
+    """Cut a square around every clear person, shrunk to equal height; smaller people are omitted."""
     return [
         _square(moment.grey, box)
         for box in moment.boxes[moment.clear]

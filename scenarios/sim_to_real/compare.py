@@ -1,4 +1,4 @@
-"""Set rendered clips beside real ones."""
+"""Compare rendered clips with real ones."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -23,12 +23,12 @@ from peopleboy.scenarios.sim_to_real.clips import (
 from peopleboy.scenarios.sim_to_real.measures import ImageStatistics, gradient, measure_images
 from peopleboy.tracker.rgbd.human_windows import hog_descriptor
 
-# A two-sample test as one number: how well a small classifier separates rendered patches from real ones.
+# A classifier two-sample test: how well a small classifier separates rendered patches from real ones.
 
 Floats = NDArray[np.float64]
 
 FEWEST: Final = 24
-"""Patches that a side must have."""
+"""Minimum number of patches per side."""
 
 _FOLDS: Final = 5
 _REPEATS: Final = 4
@@ -38,14 +38,14 @@ _GRADIENTS: Final = np.array([0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, np.inf])
 
 @dataclass(frozen=True, slots=True)
 class Separability:
-    """How well patches are classified.
+    """How well a classifier separates rendered patches from real ones.
 
     Attributes:
-        auc: area under the ROC curve, 0.5 where nothing separates them, 1 where everything does: mean over
-            folds, and the 95 % interval of that mean by the bootstrap over folds.
-        folds: of each fold.
-        scenes: how many rendered and real scenes there are.
-        patches: how many rendered and real patches.
+        auc: area under the ROC curve, 0.5 for inseparable patches, 1 for perfect separation: mean over folds,
+            and its 95 % bootstrap interval over folds.
+        folds: area under the ROC curve of each fold.
+        scenes: numbers of rendered and real scenes.
+        patches: numbers of rendered and real patches.
     """
 
     auc: Interval
@@ -55,7 +55,7 @@ class Separability:
 
 
 def features(patch: Grey) -> Floats:
-    """Describe a patch (32, 32) by gradients alone: HOG (324,) and shares of eight steps of magnitude.
+    """Return the features of a patch (32, 32), gradients only: HOG (324,) and a histogram of magnitudes (8,).
 
     Source: N. Dalal and B. Triggs, Histograms of oriented gradients for human detection, CVPR 2005: cells of
     8 x 8 pixels, blocks of 2 x 2 cells, 9 orientations.
@@ -68,16 +68,16 @@ def features(patch: Grey) -> Floats:
 def classify_patches(
     rendered: Sequence[Sequence[Grey]], real: Sequence[Sequence[Grey]], seed: int, of_what: str
 ) -> Separability:
-    """Teach a logistic regression, and judge it by scenes that it has not seen.
+    """Train a logistic regression, and test it on held-out scenes.
 
-    The scenes of both sides are dealt into folds, as many as the side with fewer scenes has, at most five,
-    four times over. No scene is in training and in test at once.
+    The scenes of both sides are divided into folds four times. The number of folds is the number of scenes of
+    the smaller side, at most five. No scene is in training and test of the same fold.
 
     Args:
         rendered: patches of each rendered scene.
         real: patches of each real scene.
-        seed: of the deals.
-        of_what: what the patches are, for errors.
+        seed: seed of the division into folds.
+        of_what: name of the patches, for errors.
 
     Raises:
         BadInput: scikit-learn is missing, or there are too few scenes or patches.
@@ -116,7 +116,7 @@ def _check_enough(name: str, side: Sequence[Floats], of_what: str) -> None:
     if len(side) < 2:
         raise BadInput(
             f"{of_what}: {len(side)} {name} scene has any; at least 2 are needed, "
-            "to learn from one and judge by another"
+            "one for training and one for the test"
         )
     patches = sum(map(len, side))
     if patches < FEWEST:
@@ -128,14 +128,14 @@ def _table(scene: Sequence[Grey]) -> Floats:
 
 
 def _deal(scenes: int, folds: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Return every scene a fold, so that each fold has one at least."""
+    """Return a fold for every scene, so that each fold has at least one scene."""
     return np.asarray(rng.permutation(np.arange(scenes) % folds))
 
 
 def _gather(
     sides: Sequence[Sequence[Floats]], dealt: Sequence[NDArray[np.int64]], fold: int, is_test: bool
 ) -> tuple[Floats, NDArray[np.int64]]:
-    """Put features (N, F) of a fold, or of all others, together, and whether each is real (N,)."""
+    """Return the features (N, F) of a fold, or of all others, and whether each is real (N,)."""
     chosen = [
         np.concatenate([rows for rows, own in zip(side, folds, strict=True) if (own == fold) == is_test])
         for side, folds in zip(sides, dealt, strict=True)
@@ -145,16 +145,16 @@ def _gather(
 
 
 PICTURES: Final = 40
-"""Of each scene, spread evenly."""
+"""Pictures of each scene, spread evenly."""
 
-_PATCHES: Final = 240  # of a scene, and as many of people at most
+_PATCHES: Final = 240  # per scene, and at most as many of people
 SHOWN: Final = 24
 """Patches in a grid."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SceneStatistics:
-    """One scene: its name, how many pictures were looked at, and what they are like."""
+    """One scene: its name, the numbers of pictures and people, and the statistics of the pictures."""
 
     name: str
     pictures: int
@@ -167,10 +167,10 @@ class Side:
     """Rendered scenes, or real ones.
 
     Attributes:
-        looks: of all scenes together, each counting as many times as it has pictures.
-        scenes: each by itself.
-        background: patches (32, 32) of background to be shown.
-        people: patches (32, 32) of people to be shown.
+        stats: statistics of all scenes, weighted by their numbers of pictures.
+        scenes: statistics of each scene.
+        background: patches (32, 32) of background for display.
+        people: patches (32, 32) of people for display.
     """
 
     stats: ImageStatistics
@@ -181,14 +181,14 @@ class Side:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Comparison:
-    """Rendered beside real.
+    """Comparison of rendered and real scenes.
 
     Attributes:
-        rendered: one side.
-        real: the other.
-        separability: how well patches from anywhere are classified.
-        told_people: how well people are; None if there are too few.
-        lacking: why there is no figure for people; empty if there is.
+        rendered: the rendered scenes.
+        real: the real scenes.
+        separability: separability of patches from anywhere.
+        of_people: separability of people; None if there are too few.
+        lacking: why there is no result for people; empty if there is one.
     """
 
     rendered: Side
@@ -198,7 +198,7 @@ class Comparison:
     lacking: str
 
     def to_json(self) -> dict[str, Any]:
-        """As JSON can hold it."""
+        """Return the comparison for JSON."""
         return {
             "auc": asdict(self.separability),
             "auc_people": None if self.of_people is None else asdict(self.of_people),
@@ -210,7 +210,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Cut:
-    """A scene's pictures, and patches of them."""
+    """Pictures of a scene, and patches from them."""
 
     name: str
     moments: list[ClipFrame]
@@ -224,11 +224,12 @@ def compare_images(rendered: Sequence[Path], real: Sequence[Path], seed: int = 0
 
     Args:
         rendered: folders of runs with pictures, or of sets of them.
-        real: folders of real clips, or of several.
+        real: folders of real clips, or of sets of them.
         seed: 0 or more.
 
     Raises:
-        BadInput: a folder without pictures or truth, pictures that cannot be used, too few scenes or patches.
+        BadInput: a folder has no pictures or ground truth, pictures are unsuitable, or there are too few
+            scenes or patches.
     """
     sides = [_cut(find_clips(folders), seed) for folders in (rendered, real)]
     separability = classify_patches(
@@ -283,7 +284,7 @@ def _side(scenes: Sequence[_Cut], seed: int) -> Side:
 
 
 def _in_turn(scenes: Sequence[Sequence[Grey]], rng: np.random.Generator) -> tuple[Grey, ...]:
-    """Choose patches to be shown: one of every scene, then another one of every scene."""
+    """Choose patches for display, one of every scene in turn."""
     mixed = [[scene[index] for index in rng.permutation(len(scene))] for scene in scenes]
     longest = max((len(scene) for scene in mixed), default=0)
     return tuple(scene[turn] for turn in range(longest) for scene in mixed if turn < len(scene))[:SHOWN]
@@ -299,7 +300,7 @@ def _figures(side: Side) -> dict[str, Any]:
 
 
 def figures_of(stats: ImageStatistics) -> dict[str, float | None]:
-    """The figures of some pictures that are one number each; None where there is none."""
+    """Return the scalar statistics of pictures; None for undefined ones."""
     has_people = bool(len(stats.contrast))
     return {
         "background_deviation": stats.deviation,

@@ -1,4 +1,4 @@
-"""Statistics of thermal images: grey, gradients, noise, and the contrast of people."""
+"""Compute statistics of thermal images: grey, gradients, noise, and the contrast of people."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -15,8 +15,8 @@ GRADIENT_EDGES: Final = np.concatenate([[0.0], np.geomspace(1.0, 128.0, 22)])
 CONTRAST_EDGES: Final = np.arange(-160.0, 250.0, 10.0)
 _WINDOW: Final = 64
 _WINDOWS: Final = 3
-_STEADY: Final = 0.9  # share of the pixels that counts as noise; the rest may be something that moves
-_LEFT: Final = 0.7895  # root mean square of that share of a normal distribution of deviation 1
+_STEADY: Final = 0.9  # share of the pixels that counts as noise; the rest may be moving objects
+_LEFT: Final = 0.7895  # root mean square of that share of a standard normal distribution
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,10 +28,10 @@ class ImageStatistics:
         gradient: (22,) share of pixels of the shrunken pictures by gradient magnitude [grey/px].
         spectrum: (32,) power of background by spatial frequency, up to half a cycle a pixel [grey^2].
         noise_spectrum: (32,) the same of differences between a picture and the next, halved.
-        contrast: (P,) people's mean grey less that of a ring round their box [grey].
+        contrast: (P,) people's mean grey less that of a ring around their box [grey].
         contrast_in_ring: (P,) the same in standard deviations of the ring.
         deviation: standard deviation of the background of a picture, mean over pictures [grey].
-        noise: deviation of what changes between pictures but for its largest tenth, median [grey].
+        noise: standard deviation of noise from differences between pictures, median over pictures [grey].
         clipped: share of pixels of value 0 or 255.
     """
 
@@ -47,7 +47,7 @@ class ImageStatistics:
 
 
 def measure_images(moments: list[ClipFrame], rng: np.random.Generator) -> ImageStatistics:
-    """Measure pictures; each counts the same."""
+    """Return the statistics of pictures, which have equal weight."""
     contrasts = [pair for moment in moments for pair in contrasts_of(moment)]
     table = np.array(contrasts, np.float64).reshape(-1, 2)
     steady = [moment for moment in moments if moment.later is not None]
@@ -66,21 +66,21 @@ def measure_images(moments: list[ClipFrame], rng: np.random.Generator) -> ImageS
 
 
 def gradient(grey: Grey) -> Floats:
-    """Magnitude (H, W) of the gradient by central differences [grey/px]."""
+    """Return the magnitude (H, W) of the gradient by central differences [grey/px]."""
     down, right = np.gradient(grey.astype(np.float64))
     return np.asarray(np.hypot(down, right))
 
 
 def background_deviation(moment: ClipFrame) -> float:
-    """Standard deviation of grey where nobody is; of the whole picture if people fill it."""
+    """Return the standard deviation of grey outside people's boxes; of the whole picture if they fill it."""
     free = ~covered(moment.grey.shape, moment.boxes)
     return float((moment.grey[free] if free.any() else moment.grey).std())
 
 
 def noise_of(moment: ClipFrame) -> float:
-    """Standard deviation of noise, from changes where nobody is, the largest tenth of them left out.
+    """Return the standard deviation of noise, from changes outside boxes, without the largest tenth.
 
-    For normal noise it is its deviation.
+    For normal noise, the result is its standard deviation.
     """
     assert moment.later is not None
     free = ~covered(moment.grey.shape, moment.boxes, grown=0.5)
@@ -93,9 +93,9 @@ def noise_of(moment: ClipFrame) -> float:
 
 
 def contrasts_of(moment: ClipFrame) -> list[tuple[float, float]]:
-    """How much everybody who is clear differs from the ring round the box: [grey], [deviations of the ring].
+    """Return the contrast of every clear person to a ring around the box: [grey], [deviations of the ring].
 
-    The ring reaches half the box's size beyond it on every side, and leaves out other people's boxes.
+    The ring extends half the box's size beyond it on every side, without other people's boxes.
     """
     taken = covered(moment.grey.shape, moment.boxes, grown=0.0)
     found = []
@@ -112,7 +112,7 @@ def contrasts_of(moment: ClipFrame) -> list[tuple[float, float]]:
 
 
 def radial_power(window: Floats) -> Floats:
-    """Power of a square window (N, N) by spatial frequency (N / 2,), its mean left out, Hann-weighted.
+    """Return the power (N / 2,) of a square window (N, N) by spatial frequency, without mean, Hann-weighted.
 
     White noise of variance s has the power s at every frequency.
     """

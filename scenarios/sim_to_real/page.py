@@ -1,4 +1,4 @@
-"""The page that sets rendered pictures beside real ones, in one file that needs nothing else."""
+"""Write the page that compares rendered with real pictures, as one self-contained file."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -40,13 +40,13 @@ _Draw = Callable[[Axes, ImageStatistics, dict[str, Any]], None]
 
 
 def draw_charts(comparison: Comparison) -> list[tuple[str, Markup]]:
-    """Draw grey, gradients, both spectra and contrast of both sides, each with its title."""
+    """Draw grey, gradients, both spectra and contrast of both sides; return charts with titles."""
     charts: list[tuple[str, str, _Draw]] = [
         ("Grey", "grey", _grey),
         ("Gradient magnitude", "grey/px", _gradient),
-        ("Background, by spatial frequency", "cycles/px", _spectrum),
-        ("Change to the next picture, by spatial frequency", "cycles/px", _noise),
-        ("People against a ring of background", "grey", _contrast),
+        ("Power of the background", "cycles/px", _spectrum),
+        ("Power of the change to the next picture", "cycles/px", _noise),
+        ("Contrast of people to the background", "grey", _contrast),
     ]
     return [(title, _chart(comparison, title, across, draw)) for title, across, draw in charts]
 
@@ -63,7 +63,7 @@ def _chart(comparison: Comparison, title: str, across: str, draw: _Draw) -> Mark
     axes.grid(color=LINE, lw=0.6)
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(frameon=False, handlelength=3.0)
-    return inline(figure, title, f"{title}: rendered beside real")
+    return inline(figure, title, f"{title}: rendered and real")
 
 
 def _grey(axes: Axes, stats: ImageStatistics, style: dict[str, Any]) -> None:
@@ -110,7 +110,7 @@ def _contrast(axes: Axes, stats: ImageStatistics, style: dict[str, Any]) -> None
 
 
 def grid(patches: Sequence[Grey]) -> str:
-    """Lay patches out side by side, as the data address of a PNG; empty without any."""
+    """Return a grid of patches as the data URL of a PNG; empty without patches."""
     if not patches:
         return ""
     rows, step = -(-len(patches) // _COLUMNS), _LARGER * SIDE + _GAP_PX
@@ -127,7 +127,7 @@ _STYLE = HERE.parent / "report"
 
 
 def write_comparison(comparison: Comparison, out: Path) -> None:
-    """Write the page, whole or not at all.
+    """Write the page, completely or not at all.
 
     Raises:
         BadInput: it cannot be written there.
@@ -136,7 +136,7 @@ def write_comparison(comparison: Comparison, out: Path) -> None:
 
 
 def render_comparison(comparison: Comparison) -> str:
-    """Write the page as HTML."""
+    """Return the page as HTML."""
     sides = {"rendered": comparison.rendered, "real": comparison.real}
     return render_page(
         "comparison.html.jinja",
@@ -158,19 +158,19 @@ def render_comparison(comparison: Comparison) -> str:
 
 
 def headline(comparison: Comparison) -> str:
-    """Describe how well patches are classified."""
+    """Summarise the separability of patches and people."""
     separability, people = comparison.separability, comparison.of_people
-    said = f"Rendered and real patches are told apart with an AUC of {describe_auc(separability)}"
+    said = f"A classifier separates rendered from real patches with an AUC of {describe_auc(separability)}"
     return f"{said}, people with {describe_auc(people)}." if people is not None else f"{said}."
 
 
 def describe_auc(separability: Separability) -> str:
-    """A mean and its interval."""
+    """Format a mean and its interval."""
     return f"{separability.auc.mean:.3f} ({separability.auc.low:.3f} to {separability.auc.high:.3f})"
 
 
 def table_rows(name: str, side: Side) -> list[tuple[str, ...]]:
-    """Figures of a side, then of each of its scenes."""
+    """Return the statistics of a side, then of each of its scenes."""
     pictures = sum(scene.pictures for scene in side.scenes)
     people = sum(scene.people for scene in side.scenes)
     rows = [(f"{name}, all", pictures, people, figures_of(side.stats))]
@@ -194,13 +194,13 @@ HEADS = (
     "scene",
     "pictures",
     "people",
-    "deviation of background [grey]",
+    "background deviation [grey]",
     "noise [grey]",
     "clipped [%]",
     "contrast of people [grey]",
-    "in deviations of the ring",
+    "contrast [deviations of the ring]",
 )
-"""Of the columns of `table_rows`."""
+"""Headings of the columns of `table_rows`."""
 
 
 def _or_nothing(value: float | None, form: str) -> str:

@@ -1,1 +1,1 @@
-"""ROS 2 bags: messages of images, people and the robot, and the bag that they go to."""
+"""ROS 2 bags: messages of images, people and the robot, and the bag writer."""

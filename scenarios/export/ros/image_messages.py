@@ -22,7 +22,7 @@ _FLOAT32 = 7  # of sensor_msgs/PointField
 def image_messages(
     cameras: Mapping[str, CameraConfig], images: Mapping[str, NDArray[Any]], time_ns: int
 ) -> Iterator[Message]:
-    """Yield the images of all cameras that have one at this instant, and their calibrations."""
+    """Yield the images of all cameras that have one at this tick, and their calibrations."""
     due = {name: camera for name, camera in cameras.items() if name in images}
     for name, config in due.items():
         head = header(optical(name), time_ns)
@@ -34,7 +34,7 @@ def image_messages(
             raw = _image_of_16_bits(head, encode_16bit(images[f"{name}_c"]))
             yield f"/{name}/image16", "sensor_msgs/Image", raw
     for name, config in due.items():
-        if isinstance(config.camera, Pinhole):  # the message knows no other geometry
+        if isinstance(config.camera, Pinhole):  # the message supports no other geometry
             content = _camera_info(header(optical(name), time_ns), config.camera)
             yield f"/{name}/camera_info", "sensor_msgs/CameraInfo", content
 
@@ -50,9 +50,9 @@ def _image(head: Content, topic: str, image: NDArray[np.uint8]) -> Message:
 def _depth_images(
     head: Content, camera: str, config: DepthConfig, images: Mapping[str, NDArray[Any]]
 ) -> Iterator[Message]:
-    """Yield what a depth camera saw: depth without loss, its colours, and points with both.
+    """Yield the messages of a depth camera: lossless depth, colour image, and a coloured point cloud.
 
-    Points are those of every 4th pixel of every 4th row; colours are 0RGB, as in ROS's own clouds.
+    The cloud has every 4th pixel of every 4th row; colours are 0RGB, as in ROS's own clouds.
     """
     yield f"/{camera}/image_raw", "sensor_msgs/Image", _image_of_16_bits(head, images[camera])
     places, pixels = points_of(images[camera], config.camera, _POINT_EVERY)
@@ -75,7 +75,7 @@ def _image_of_16_bits(head: Content, image: NDArray[np.uint16]) -> Content:
 
 
 def points_message(head: Content, columns: Mapping[str, NDArray[Any]]) -> Content:
-    """Describe points by the values (N,) of each of their fields, in 32 bits."""
+    """Return a point cloud from the values (N,) of each of its fields, in 32 bits."""
     rows = np.stack([*columns.values()], axis=1).astype("<f4")
     fields = [
         {"name": name, "offset": 4 * k, "datatype": _FLOAT32, "count": 1} for k, name in enumerate(columns)

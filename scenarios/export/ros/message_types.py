@@ -1,6 +1,6 @@
 """ROS 2 message types, and messages made from nested mappings.
 
-Stamps are whole nanoseconds, those of a run counted from its start or from an epoch.
+Stamps are whole nanoseconds, counted from the start of the run or from an epoch.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,11 +19,11 @@ Message = tuple[str, str, Any]  # topic, type, content
 Content = dict[str, Any]
 RosDistro = Literal["humble", "jazzy"]
 
-_PLANE = np.ix_((0, 1, 5), (0, 1, 5))  # x, y and the turn about z of a covariance in space
+_PLANE = np.ix_((0, 1, 5), (0, 1, 5))  # indices of x, y and rotation about z in a 6 x 6 covariance
 MAP, ODOM, BASE = "map", "odom", "base_link"
 _STORES: Final = {"humble": Stores.ROS2_HUMBLE, "jazzy": Stores.ROS2_JAZZY}
 
-# vision_msgs 4 and people_msgs, which no ROS distribution ships with its base.
+# vision_msgs 4 and people_msgs, which are not part of the base installation of ROS.
 _MORE: Final = {
     "vision_msgs/msg/Point2D": "float64 x\nfloat64 y",
     "vision_msgs/msg/Pose2D": "vision_msgs/Point2D position\nfloat64 theta",
@@ -54,7 +54,7 @@ _MORE: Final = {
 def message_types(distro: RosDistro = "jazzy") -> Typestore:
     """Return all message types in use, as a ROS distribution defines them.
 
-    Between Humble and Jazzy only sensor_msgs/Range differs, which has a variance since Iron.
+    Between Humble and Jazzy only sensor_msgs/Range differs: since Iron it has a variance.
     """
     store = get_typestore(_STORES[distro])
     for name, text in _MORE.items():
@@ -68,7 +68,7 @@ def build(types: Typestore, kind: str, content: Mapping[str, Any]) -> Any:
     Args:
         types: from `message_types`.
         kind: its type, such as `std_msgs/msg/Header`.
-        content: values by field; of fields that are messages, again mappings.
+        content: values by field; mappings for fields that are messages.
     """
 
     def field(form: tuple[Nodetype, Any], value: Any) -> Any:
@@ -89,13 +89,13 @@ def nanoseconds(time_s: float) -> int:
 
 
 def stamp(time_ns: int) -> Content:
-    """Describe an instant."""
+    """Return the Time message of an instant."""
     sec, nanosec = divmod(time_ns, 1_000_000_000)
     return {"sec": sec, "nanosec": nanosec}
 
 
 def header(frame: str, time_ns: int) -> Content:
-    """Describe when and in which frame something was measured."""
+    """Return the Header message of a time and a frame."""
     return {"stamp": stamp(time_ns), "frame_id": frame}
 
 
@@ -105,27 +105,27 @@ def optical(camera: str) -> str:
 
 
 def vector(x: float, y: float, z: float) -> Content:
-    """Describe a vector or a point."""
+    """Return the message of a vector or a point."""
     return {"x": x, "y": y, "z": z}
 
 
 def quaternion(turn: NDArray[np.float64]) -> Content:
-    """Describe a rotation (4,) x, y, z, w."""
+    """Return the message of a rotation (4,) x, y, z, w."""
     return dict(zip("xyzw", map(float, turn), strict=True))
 
 
 def heading_quaternion(heading_rad: float) -> Content:
-    """Describe a rotation about the vertical axis."""
+    """Return the message of a rotation about the vertical axis."""
     return quaternion(np.asarray(Rotation.from_euler("z", heading_rad).as_quat()))
 
 
 def pose_at(x: float, y: float, z: float = 0.0, heading_rad: float = 0.0) -> Content:
-    """Describe an upright pose."""
+    """Return the message of an upright pose."""
     return {"position": vector(x, y, z), "orientation": heading_quaternion(heading_rad)}
 
 
 def pose_with_covariance(pose: Pose2, covariance: NDArray[np.float64] | None = None) -> Content:
-    """Describe a pose on the floor with the covariance (3, 3) of x, y [m] and heading [rad]; None for 0."""
+    """Return the message of a floor pose with covariance (3, 3) of x, y [m], heading [rad]; None for 0."""
     spatial = np.zeros((6, 6))
     if covariance is not None:
         spatial[_PLANE] = covariance
@@ -133,6 +133,6 @@ def pose_with_covariance(pose: Pose2, covariance: NDArray[np.float64] | None = N
 
 
 def transform_between(parent: Content, child: str, place: Sequence[float], turn: Content) -> Content:
-    """Describe the pose of a frame in that of a header."""
+    """Return the message of a frame's pose in the frame of a header."""
     transform = {"translation": vector(*place), "rotation": turn}
     return {"header": parent, "child_frame_id": child, "transform": transform}

@@ -1,4 +1,4 @@
-"""ROS 2 messages of people, true and tracked: boxes, places, markers for RViz, and people_msgs."""
+"""ROS 2 messages of true and tracked people: boxes, positions, markers for RViz, and people_msgs."""
 
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
@@ -27,7 +27,7 @@ from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track, confirmed
 
 _PERSON_M: Final = 1.7  # height of a tracked person's marker
-_OVER_EYES_M: Final = 0.12  # from the highest joint, an eye or an ear, to the crown
+_OVER_EYES_M: Final = 0.12  # from the highest joint, an eye or an ear, to the top of the head
 _WIDE_M: Final = 0.45
 _TEXT_M: Final = 0.2
 _CYLINDER, _TEXT, _ADD, _DELETE_ALL = 3, 9, 0, 3  # of visualization_msgs/Marker
@@ -35,11 +35,11 @@ _OVER_S: Final = 1.0  # over which a track's velocity is measured
 
 
 class PeopleMessages:
-    """Turn the people of ticks, in their order, into messages.
+    """Converts the people of successive ticks to messages.
 
     Args:
         cameras: names of the robot's cameras.
-        further: those of cameras besides the thermal one that have truth of their own.
+        further: names of the cameras besides the thermal one that have ground truth.
     """
 
     def __init__(self, cameras: Sequence[str], further: Sequence[str]) -> None:
@@ -69,7 +69,7 @@ class PeopleMessages:
         yield "/truth/positions", "people_msgs/People", {"header": header(MAP, time_ns), "people": people}
 
     def _tracked(self, tracks: Sequence[Track], odometry: Pose2, time_ns: int) -> Content:
-        """Describe tracks in the frame of the odometry, with their mean velocity over the last second."""
+        """Return tracks in the odometry frame, with their mean velocity over the last second."""
         people, paths = [], {}
         for track in tracks:
             assert track.place is not None
@@ -117,7 +117,7 @@ def _true_markers(person: PersonTruth) -> Body:
 
 
 def _markers(topic: str, bodies: Iterator[Body], head: Content) -> Message:
-    """Describe people as cylinders with labels, which replace all earlier ones."""
+    """Return people as labelled cylinders, which replace all earlier ones."""
     markers = [_marker(head, 0, _ADD, (0.0, 0.0, 0.0)) | {"action": _DELETE_ALL}]
     for label, number, (x, y), height, colour in bodies:
         look = {"scale": vector(_WIDE_M, _WIDE_M, height), "color": _colour(colour, 0.6), "ns": "people"}
@@ -148,7 +148,7 @@ def _colour(rgb: tuple[int, int, int], alpha: float) -> Content:
 def _detections(
     topic: str, found: Sequence[tuple[str, Box, float]], time_ns: int, camera: str = "thermal"
 ) -> Message:
-    """Describe people in a camera's image by name, box and score."""
+    """Return people in a camera's image with name, box and score."""
     head = header(optical(camera), time_ns)
     nowhere = pose_with_covariance(Pose2(0.0, 0.0, 0.0))
     detections = []
@@ -160,7 +160,7 @@ def _detections(
 
 
 def _places(tracks: Sequence[Track], head: Content) -> Message:
-    """Describe where tracks stand on the floor, with the covariance."""
+    """Return the positions of tracks on the floor, with covariance."""
     detections = []
     for track in tracks:
         assert track.place is not None

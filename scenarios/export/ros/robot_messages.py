@@ -1,7 +1,7 @@
 """ROS 2 messages of the robot: odometry, sonars, frames as in REP 105, and its description.
 
 Frames: map -> odom -> base_link -> thermal_optical, colour_optical and one for each further camera, for each
-sonar and for each link; a frame per person, too.
+sonar and each link, and a frame per person.
 """
 
 import math
@@ -34,14 +34,14 @@ from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M, UR
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 _ULTRASOUND: Final = 0  # of sensor_msgs/Range
-_ROOT: Final = "base"  # the URDF's link at the origin, which ROS calls base_link
+_ROOT: Final = "base"  # the URDF's root link, called base_link in ROS
 
 
 class OdometryCovariance:
-    """Add up the errors of wheel encoders, to first order, without slip of the wheels.
+    """Accumulates the errors of wheel encoders, to first order, without wheel slip.
 
     Args:
-        encoder_noise_m: [m] standard deviation of the way that a wheel's encoder counts on 1 m.
+        encoder_noise_m: [m] standard deviation of the distance that a wheel's encoder measures over 1 m.
     """
 
     def __init__(self, encoder_noise_m: float) -> None:
@@ -71,10 +71,10 @@ class OdometryCovariance:
 
 
 class RobotMessages:
-    """Turn the robot of ticks, in their order, into messages.
+    """Converts the robot's state at successive ticks to messages.
 
     Args:
-        robot: which.
+        robot: configuration of the robot.
     """
 
     def __init__(self, robot: RobotConfig) -> None:
@@ -82,7 +82,7 @@ class RobotMessages:
         self._noise = OdometryCovariance(robot.drive.encoder_noise_m)
 
     def fixed(self, time_ns: int) -> Iterator[Message]:
-        """Yield, once, what the robot looks like, and where its cameras, sonars and links are on it."""
+        """Yield the static messages: robot description, and poses of cameras, sonars and links."""
         base = header(BASE, time_ns)
         height_m = self._robot.sonar.height_m
         frames = [
@@ -126,7 +126,7 @@ class RobotMessages:
 
 
 def robot_description() -> str:
-    """Return the URDF of the robot, its root named as ROS names it."""
+    """Return the URDF of the robot, with its root link renamed to base_link."""
     text = URDF.read_text(encoding="utf-8")
     return text.replace(f'<link name="{_ROOT}">', f'<link name="{BASE}">').replace(
         f'<parent link="{_ROOT}"/>', f'<parent link="{BASE}"/>'
@@ -134,7 +134,7 @@ def robot_description() -> str:
 
 
 def _link_frames(base: Content) -> list[Content]:
-    """Place the links besides the root, wheels at rest."""
+    """Return the transforms of all links but the root, with wheels at rest."""
     _, *links = read_links(URDF)
     return [_frame(base, link.name, link.base_from_link) for link in links]
 
@@ -145,14 +145,14 @@ def _sonar(number: int) -> str:
 
 
 def _echoes(sonar_m: NDArray[np.float64], height_m: float) -> Mapping[str, NDArray[np.float64]]:
-    """Return what each sonar measured, as points on their axes, and the ranges."""
+    """Return the sonar readings, as points on the sonars' axes and as ranges."""
     ahead = np.stack([np.cos(SONAR_ANGLE_RAD), np.sin(SONAR_ANGLE_RAD)], axis=1)
     x, y = (SONAR_POSITION_M + sonar_m[:, None] * ahead).T
     return {"x": x, "y": y, "z": np.full(len(x), height_m), "range": sonar_m}
 
 
 def _frames(tick: Tick, time_ns: int) -> list[Content]:
-    """Place odometry in the world so that the robot gets its true pose, and people."""
+    """Return the transforms of odometry, so that the robot has its true pose, and of people."""
     odometry = tick.observation.odometry
     poses = [(MAP, ODOM, drift(tick.truth.robot, odometry)), (ODOM, BASE, odometry)]
     poses += [
@@ -173,7 +173,7 @@ def _frame(base: Content, name: str, pose: NDArray[np.float64]) -> Content:
 
 
 def drift(true: Pose2, odometry: Pose2) -> Pose2:
-    """Return the pose of the odometry's frame in the world: composed with the odometry, the true pose."""
+    """Return the pose of the odometry frame in the world; composed with odometry it gives the true pose."""
     heading = math.remainder(true.heading - odometry.heading, math.tau)
     cos, sin = math.cos(heading), math.sin(heading)
     return Pose2(

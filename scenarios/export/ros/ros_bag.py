@@ -15,10 +15,10 @@ from peopleboy.scenarios.run_folder.folder import further_cameras
 if TYPE_CHECKING:
     from peopleboy.scenarios.export.ros.message_types import RosDistro
 
-# Of the bag's metadata: Iron's. Later distributions read it too, and Humble, which fails at version 9.
+# Metadata version of Iron. Later distributions read it, and so does Humble, which fails at version 9.
 _VERSION: Final = 8
 _ONCE: Final = ("/tf_static", "/robot_description")
-_LATEST_S: Final = 2**31  # at which the seconds of ROS's stamps, of 32 bits with a sign, end
+_LATEST_S: Final = 2**31  # end of the signed 32-bit seconds of ROS stamps
 
 
 def write_mcap(
@@ -27,14 +27,14 @@ def write_mcap(
     """Write a bag for each run.
 
     Args:
-        runs: which.
-        folder: for them.
-        play: gives a run's ticks.
-        epoch: when runs begin; see `epoch_ns`.
-        ros_distro: whose message types they have.
+        runs: the runs to write.
+        folder: output folder.
+        play: returns the ticks of a run.
+        epoch: start of the timestamps; see `epoch_ns`.
+        ros_distro: ROS distribution of the message types.
 
     Raises:
-        BadInput: the package that writes bags is not installed, or the epoch is no time.
+        BadInput: the package that writes bags is not installed, or the epoch is invalid.
     """
     need("rosbags", "--format mcap")
     start_ns = epoch_ns(epoch)
@@ -43,13 +43,13 @@ def write_mcap(
 
 
 def epoch_ns(epoch: str) -> int:
-    """Return when runs begin, in nanoseconds since 1970.
+    """Return the start of the timestamps in nanoseconds since 1970.
 
     Args:
-        epoch: "0", "now", or a date and time as in ISO 8601, in UTC unless it says another zone.
+        epoch: "0", "now", or a date and time as in ISO 8601, in UTC unless it has another time zone.
 
     Raises:
-        BadInput: it is none of these, or before 1970 or after 2038.
+        BadInput: the epoch is none of these, before 1970, or after January 2038.
     """
     if epoch == "0":
         return 0
@@ -63,8 +63,8 @@ def epoch_ns(epoch: str) -> int:
         ) from error
     seconds = (given if given.tzinfo else given.replace(tzinfo=UTC)).timestamp()
     if not 0 <= seconds < _LATEST_S:
-        raise BadInput(f"--epoch {epoch}: ROS has times from 1970 to January 2038 only")
-    return round(seconds * 1e6) * 1000  # ISO times here have microseconds
+        raise BadInput(f"--epoch {epoch}: is outside the range of ROS times, 1970 to January 2038")
+    return round(seconds * 1e6) * 1000  # datetime resolves microseconds
 
 
 def _write_bag(run: FinishedRun, folder: Path, play: Play, start_ns: int, distro: "RosDistro") -> None:
@@ -101,7 +101,7 @@ def _write_bag(run: FinishedRun, folder: Path, play: Play, start_ns: int, distro
 
 
 def _quality(topic: str) -> tuple[Any, ...]:
-    """Let whoever comes late still get what is said only once."""
+    """Return the QoS profile of a topic; messages that are sent once reach late subscribers too."""
     from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 
     is_once = topic in _ONCE

@@ -1,1 +1,1 @@
-"""What a report draws: timelines, curves, ways, stills."""
+"""Charts of a report: timelines, error curves and paths."""

@@ -1,4 +1,4 @@
-"""How errors depend on the distance, and on how much of a person is visible."""
+"""Draw errors over the distance, and over the visible share of a person."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -16,15 +16,15 @@ from peopleboy.scenarios.report.page_parts import LINE, SERIES, inline, new_figu
 from peopleboy.tracker.evaluation.box_matching import counts
 
 VISIBLE = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
-_FEWEST = 5  # boxes in a bin, below which a figure says nothing
+_FEWEST = 5  # boxes in a bin; smaller bins are omitted
 _DASHES = ("-", (0, (4, 2)), (0, (1.4, 2)), (0, (5, 2, 1.4, 2)))
 _WIDTH_PT, _HEIGHT_PT = 280.0, 150.0
 
 Samples = dict[str, Floats]
-"""Of each moment of a person who counts and of whom something is visible, (K,) each.
+"""Arrays (K,), one value per frame of a counted person who is at least partly visible.
 
-distance [m], visible: share of the silhouette, found: 100 where a track lies on the person, else 0 [%],
-offset: of the box's middle from the truth's [px], NaN without one.
+distance [m]; visible: share of the silhouette; found: 100 if a track is on the person, else 0 [%];
+offset: distance of the box centre from that of the ground truth [px], NaN without a box.
 """
 
 
@@ -32,20 +32,20 @@ class CurvePoint(NamedTuple):
     """One bin of a curve."""
 
     x: float  # middle of the bin
-    mean: float  # over runs of their means
+    mean: float  # mean over runs of the means of runs
     sd: float  # sample standard deviation over runs; 0 for fewer than two
-    boxes: int  # how many are in the bin
+    boxes: int  # number of boxes in the bin
 
 
 def distance_edges(runs: Iterable[RunFindings]) -> tuple[float, ...]:
-    """Return the edges [m] of bins a metre wide over all distances at which people count in some runs."""
+    """Return the edges [m] of bins, one metre wide, over all distances at which people are counted."""
     nearest_m, farthest_m = zip(*(found.counted_m for found in runs), strict=True)
     first, last = min(nearest_m), max(farthest_m)
     return (first, *(float(edge) for edge in range(math.floor(first) + 1, math.ceil(last))), last)
 
 
 def samples(found: RunFindings) -> Samples:
-    """Collect what curves are made of, once for each image."""
+    """Collect the samples of a run, once per image."""
     parts: list[list[Floats]] = [[np.zeros(0)] * 4]
     for person in found.people:
         at = counts(person.is_counted, person.visible) & (np.arange(found.run.frames) % found.every == 0)
@@ -56,9 +56,9 @@ def samples(found: RunFindings) -> Samples:
 
 
 def curve(runs: Sequence[Samples], over: str, figure: str, edges: Sequence[float]) -> list[CurvePoint]:
-    """Average a figure in bins, the last of them closed, run by run, and then over the runs.
+    """Average a value in bins, the last one closed, first within each run and then over runs.
 
-    Bins with fewer than five boxes are left out.
+    Bins with fewer than five boxes are omitted.
     """
     points = []
     for low, high in pairwise(edges):
@@ -76,21 +76,21 @@ def curve(runs: Sequence[Samples], over: str, figure: str, edges: Sequence[float
 
 
 def draw_error_curves(columns: Sequence[Column]) -> list[tuple[str, Markup]]:
-    """Draw, with their titles, whether people are found and how far off boxes are, for all columns."""
+    """Draw detection rate and position error of boxes for all columns; return charts with titles."""
     runs = {column.label: [samples(found) for found in column.runs] for column in columns}
     distances_m = distance_edges(found for column in columns for found in column.runs)
     charts = []
     for figure, title, top, unit in (
         ("found", "People found", 100.0, "%"),
-        ("offset", "How far the box is off", None, "px"),
+        ("offset", "Position error of boxes", None, "px"),
     ):
         if figure == "offset" and not any(
             np.isfinite(one[figure]).any() for of in runs.values() for one in of
         ):
-            continue  # of places on the floor
+            continue  # tracks on the floor have no boxes
         for over, edges, ticks, label, words in (
             ("distance", distances_m, distances_m[1::2], "distance from the camera [m]", "over distance"),
-            ("visible", VISIBLE, VISIBLE, "share of the person that is visible", "over visible share"),
+            ("visible", VISIBLE, VISIBLE, "visible fraction of the person", "over visible fraction"),
         ):
             curves = {name: curve(of, over, figure, edges) for name, of in runs.items()}
             name = f"{title} {words} [{unit}]"

@@ -1,4 +1,4 @@
-"""The plan of a run with the ways that people and robot really went."""
+"""Draw the plan of a run with the actual paths of people and robot."""
 
 import numpy as np
 from markupsafe import Markup
@@ -19,7 +19,7 @@ from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import spoken
 from peopleboy.scenarios.report.page_parts import inline, new_figure, svg_style
 
-_WIDTH_IN = 4.3  # such that its letters are as large as the page's on a phone
+_WIDTH_IN = 4.3  # its text has the page's font size on a phone
 # Distinct with any colour vision.
 _COLOURS = ("#0072b2", "#a8327a", "#2f7d32", "#b35c00", "#5d4a1f", "#00798c", "#7b3fa0", "#4a4a4a", "#6d7500")
 _ROBOT = "#c0392b"
@@ -28,7 +28,7 @@ _MARK_EVERY_S = 5.0
 
 @svg_style
 def draw_paths(found: RunFindings, label: str) -> Markup | None:
-    """Draw the plan; None if the place cannot be built again."""
+    """Draw the plan; return None if the place cannot be rebuilt."""
     try:
         place = found.run.scenario.place
     except BadInput:
@@ -63,7 +63,7 @@ def _draw_section(axes: Axes, found: RunFindings) -> None:
 def _draw_path(
     axes: Axes, labels: Labels, way: Floats, thick: Floats, colour: str, name: str, rate_hz: float
 ) -> None:
-    """Draw where a person went: a disc and the name at the start, small marks every five seconds."""
+    """Draw a path: a disc and the name at its start, and small marks every five seconds."""
     axes.plot(*thick.T, color=colour, lw=1.8, zorder=7)
     there = np.flatnonzero(np.isfinite(way[:, 0]))
     if len(there) == 0:

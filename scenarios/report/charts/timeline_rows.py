@@ -1,4 +1,4 @@
-"""Lay out the rows of timelines: what could be seen of people, what trackers had, and where things were."""
+"""Build the rows of timelines: visibility of people, their tracks, and states of moved objects."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -25,17 +25,17 @@ _HIDDEN: Final = {Visibility.PARTLY: "partly", Visibility.WHOLLY: "wholly"}
 
 
 class BarStyle(NamedTuple):
-    """How a stretch of a timeline looks."""
+    """Style and text of a bar in a timeline."""
 
     kind: str
-    words: str  # said when it is pointed at
-    text: str = ""  # written in it where there is room
-    track: int = 0  # whose colour it has
+    words: str  # tooltip
+    text: str = ""  # label inside the bar, if there is room
+    track: int = 0  # number of the track that gives the colour
 
 
 @dataclass(frozen=True, slots=True)
 class TimelineRow:
-    """Stretches in one row: start, end [s] and look; and marks: when [s], and what they say."""
+    """One row of bars (start, end [s] and style) and marks (time [s] and tooltip)."""
 
     label: str
     bars: tuple[tuple[float, float, BarStyle], ...]
@@ -43,13 +43,13 @@ class TimelineRow:
 
     @property
     def words(self) -> str:
-        """The same in words."""
+        """Text alternative of the row."""
         texts = [f"{start:.1f} to {end:.1f} s {look.words}" for start, end, look in self.bars]
         return f"{self.label}: " + "; ".join(texts + [words for _, words in self.marks])
 
 
 def truth_row(found: RunFindings, person: PersonHistory) -> TimelineRow:
-    """What there was to be seen of a person."""
+    """Return the row of a person's true visibility."""
 
     def look(view: int, is_counted: bool, hider: str) -> BarStyle | None:
         aside, by = "" if is_counted else ASIDE, f"by {spoken(hider)}" if hider else ""
@@ -63,11 +63,11 @@ def truth_row(found: RunFindings, person: PersonHistory) -> TimelineRow:
 
 
 def track_row(found: RunFindings, person: PersonHistory) -> TimelineRow:
-    """What the tracker had of a person."""
+    """Return the row of a person's tracks."""
 
     def look(state: int, number: int) -> BarStyle | None:
         others = {
-            TrackingState.ADRIFT: BarStyle("adrift", "its box lies elsewhere"),
+            TrackingState.ADRIFT: BarStyle("adrift", "box not on the person"),
             TrackingState.MISSED: BarStyle("missed", "not found"),
         }
         return (
@@ -96,7 +96,7 @@ def track_row(found: RunFindings, person: PersonHistory) -> TimelineRow:
 
 
 def false_track_row(found: RunFindings) -> TimelineRow:
-    """Tracks that never lay on anybody."""
+    """Return the row of tracks that are never on a person."""
     bars = []
     for stray in found.false_tracks:
         look = BarStyle("stray", f"number {stray.track}", str(stray.track))
@@ -105,7 +105,7 @@ def false_track_row(found: RunFindings) -> TimelineRow:
 
 
 def mode_row(found: RunFindings) -> TimelineRow:
-    """What the robot did, if that was more than one thing."""
+    """Return the row of the robot's modes; empty if it has only one."""
     modes = found.files.robot["mode"].to_pylist()
     names = list(dict.fromkeys(modes))
     why, reason, spans = (
@@ -122,7 +122,7 @@ def mode_row(found: RunFindings) -> TimelineRow:
 
 
 def hidden_words(found: RunFindings, person: PersonHistory) -> str:
-    """Return when the person was hidden, by whom, how much, and for how long wholly."""
+    """Describe the times at which a person was hidden: occluder, share, and time of full occlusion."""
     rate, texts = found.run.rate_hz, []
     for span in spans(np.isin(person.view, tuple(_HIDDEN))):
         if span.value:
@@ -140,13 +140,13 @@ def hidden_words(found: RunFindings, person: PersonHistory) -> str:
 
 
 def _wholly_hidden(occluded: Floats) -> int:
-    """Count frames as the scores of occlusions do: from the first that is wholly hidden on."""
+    """Count the frames of full occlusion as the occlusion scores do."""
     starts = np.flatnonzero(occluded > TOTAL_STARTS)
     return int((occluded[starts[0] :] >= TOTAL_ENDS).sum()) if len(starts) else 0
 
 
 def _bars(found: RunFindings, spans: Iterator[BarStyle | None] | Sequence[BarStyle | None]) -> Any:
-    """Make a bar of every longest run of frames that look alike."""
+    """Merge consecutive frames of equal style into bars."""
     bars, start, rate = [], 0, found.run.rate_hz
     for look, alike in groupby(spans):
         end = start + len(list(alike))
@@ -157,7 +157,7 @@ def _bars(found: RunFindings, spans: Iterator[BarStyle | None] | Sequence[BarSty
 
 
 def _settled_hiders(person: PersonHistory) -> list[str]:
-    """Who hides the person at each frame, without those who do so for a glimpse."""
+    """Return the main occluder of each frame, without brief occlusions."""
     hiders = list(person.hider)
     for stretch in spans(person.view * 2 + ~person.is_counted):
         here = hiders[stretch.start : stretch.end]
@@ -169,14 +169,14 @@ def _settled_hiders(person: PersonHistory) -> list[str]:
 
 
 THING: Final = "thing "
-"""How the kinds of events of things begin."""
+"""Prefix of the kinds of events of objects."""
 _APPEARED, _VANISHED = f"{THING}appeared", f"{THING}vanished"
 _NO_PERSON: Final = "no person"
-_HANDS: Final = ("mode1", "mode2", "mode3")  # looks of those who move things
+_HANDS: Final = ("mode1", "mode2", "mode3")  # bar styles of people who move objects
 
 
 def thing_rows(found: RunFindings) -> list[TimelineRow]:
-    """Tell of each thing, in the order of what happened first, when it stood and when somebody moved it."""
+    """Return a row for each moved object, in the order of their first events: resting and moved times."""
     lines = [line for line in found.run.events if line.kind.startswith(THING)]
     hands = list(dict.fromkeys(line.other for line in lines))
     return [

@@ -1,4 +1,4 @@
-"""Draw the timelines of a page: people, robot and things over the time of a run."""
+"""Draw the timelines of a page: people, robot and moved objects over the time of a run."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -47,16 +47,16 @@ _APPEARANCES: Final[dict[str, dict[str, Any]]] = {
     "mode2": {"fc": "#e6d7ae"},
     "mode3": {"fc": "#d9c7de"},
 }
-_STRIPES: Final = {"partly": ("#8ba3ba", -1.0), "missed": ("#d55e00", 1.0)}  # colour, and 1 if they fall
+_STRIPES: Final = {"partly": ("#8ba3ba", -1.0), "missed": ("#d55e00", 1.0)}  # colour, and 1 for hatching
 _CHANGE: Final = "#a83c00"
 _EDGES: Final = ("", "-", "--")  # of a track's bar; nothing for no line
-# All in points. A page shows the wide drawing on a desk and on paper, the narrow one on a phone.
+# All in points. A page shows the wide drawing on screens and paper, and the narrow one on phones.
 _WIDE, _NARROW, _LABELS, _RIGHT = 620.0, 270.0, 46.0, 10.0
 _ROW, _BAR, _ABOVE, _AXIS, _BESIDE, _STRIPE = 18.0, 14.0, 4.0, 16.0, 7.0, 4.0
 
 
 class PersonTimeline(NamedTuple):
-    """The rows of one person, or of the robot, as drawn, and when the person was hidden."""
+    """The drawn rows of one person or the robot, and a text about occlusions of the person."""
 
     name: str
     drawn: Markup
@@ -64,7 +64,7 @@ class PersonTimeline(NamedTuple):
 
 
 def timelines(columns: Sequence[Column]) -> list[tuple[str, list[PersonTimeline]]]:
-    """Draw the timelines of each run, under its title; but runs of the same scene share one."""
+    """Draw the timelines of each run, with its title; runs of the same scene share one."""
     if len(columns) > 1 and are_same_scene(columns) and _is_same_world(columns):
         return [(columns[0].found.run.title, _timeline(columns))]
     return [(column.label, _timeline([column])) for column in columns if column.is_single]
@@ -72,7 +72,7 @@ def timelines(columns: Sequence[Column]) -> list[tuple[str, list[PersonTimeline]
 
 @svg_style
 def swatch(kind: str, track: int = 0) -> Markup:
-    """Draw a bar of a kind for the key, or a track's."""
+    """Draw a bar of a kind, or of a track, for the legend."""
     figure = new_figure(22.0, 11.0)
     axes = figure.add_axes((0.02, 0.04, 0.96, 0.92))
     axes.set(xlim=(0.0, 1.0), ylim=(11.0, 0.0))
@@ -82,12 +82,12 @@ def swatch(kind: str, track: int = 0) -> Markup:
 
 
 def rgb(number: int) -> str:
-    """The colour of a track, for a page."""
+    """Return the colour of a track on a page."""
     return "#{:02x}{:02x}{:02x}".format(*track_colour(number))
 
 
 def track_edges(number: int) -> tuple[str, str]:
-    """Styles of the lines along a track's bar, below and above: with its colour, they make 54 looks."""
+    """Styles of the lines along the lower and upper edge of a track's bar; with colours, 54 combinations."""
     lap = (number - 1) // TRACK_COLOURS
     return _EDGES[lap % len(_EDGES)], _EDGES[lap // len(_EDGES) % len(_EDGES)]
 
@@ -114,7 +114,7 @@ def _timeline(columns: Sequence[Column]) -> list[PersonTimeline]:
 
 
 def _is_same_world(columns: Sequence[Column]) -> bool:
-    """Whether everybody was seen alike in all runs: the robot stood or drove the same way."""
+    """Return whether people's visibility is the same in all runs, since the robot had the same path."""
     views = [[(person.id, person.view.tolist()) for person in column.found.people] for column in columns]
     return all(of_run == views[0] for of_run in views)
 
@@ -122,7 +122,7 @@ def _is_same_world(columns: Sequence[Column]) -> bool:
 def draw_rows(
     found: RunFindings, rows: Sequence[TimelineRow], name: str, label: str, *, has_axis: bool
 ) -> Markup:
-    """Draw the rows of a person or something of a run, wide for desks and narrow for phones."""
+    """Draw rows of a run, in a wide version for screens and a narrow one for phones."""
     duration_s = found.run.frames / found.run.rate_hz
     words = f"{name}, {'. '.join(row.words for row in rows)}"
     wide, narrow = (
@@ -188,9 +188,9 @@ def _draw_bar(
 
 
 def _diagonals(width: float, height: float) -> tuple[Floats, Floats]:
-    """Lines that fall at 45 degrees through a box: from its left, and from its middle down, with gaps of NaN.
+    """Return hatching of a box: lines that fall at 45 degrees, separated by NaN.
 
-    They are no pattern of the page, which browsers print as large images.
+    An SVG pattern would be simpler, but browsers print patterns as large images.
     """
     starts = np.arange(_STRIPE - height, width, _STRIPE)
     left, right = np.maximum(starts, 0.0), np.minimum(starts + height, width)
@@ -204,6 +204,6 @@ def _width_pt(text: str) -> float:
 
 
 def draw_things(found: RunFindings, label: str) -> Markup:
-    """Draw a row for each thing that something happened to; nothing if there is none."""
+    """Draw a row for each object with events; nothing if there is none."""
     rows = thing_rows(found)
     return draw_rows(found, rows, "Things", label, has_axis=True) if rows else Markup("")

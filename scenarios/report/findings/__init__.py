@@ -1,1 +1,1 @@
-"""What happened in a run: who was hidden, lost and swapped, and why."""
+"""Analyse a run: occlusions, track losses, identity changes and their causes."""

@@ -1,4 +1,4 @@
-"""What became of each person in a run, frame by frame: what could be seen, and which track lay there."""
+"""Build the history of each person in a run, frame by frame: visibility and track."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import THERMAL
 
-# Runs of equal values in what is known frame by frame.
+# Spans of equal values in columns with one value per frame.
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -51,7 +51,7 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Frames from `start` up to but not including `end`, counted from 0, that have one value."""
+    """Frames from `start` up to, but not including, `end`, counted from 0, with one value."""
 
     value: int
     start: int
@@ -64,7 +64,7 @@ class Span:
 
 
 def spans(values: Ints | Flags) -> list[Span]:
-    """Cut a column (F,) into its longest runs of one value, in order."""
+    """Split a column (F,) into its maximal spans of one value, in order."""
     if len(values) == 0:
         return []
     edges = [0, *(np.flatnonzero(np.diff(values.astype(np.int64))) + 1).tolist(), len(values)]
@@ -72,9 +72,9 @@ def spans(values: Ints | Flags) -> list[Span]:
 
 
 def settle(values: Ints, shortest: int) -> Ints:
-    """Bridge the breaks in a column (F,) that are shorter than `shortest`, then forget runs that are: 0.
+    """Close gaps in a column (F,) shorter than `shortest`, then set shorter spans to 0.
 
-    Every run of a value other than 0 in the result has at least `shortest` frames.
+    Every span of a value other than 0 in the result has at least `shortest` frames.
     """
     settled = values.copy()
     for value in np.unique(values[values != 0]):
@@ -89,7 +89,7 @@ def settle(values: Ints, shortest: int) -> Ints:
 
 
 def between(values: Floats, starts: float, ends: float) -> Flags:
-    """Return (F,) where a column has risen above `starts` and not yet fallen below `ends`; NaN ends it."""
+    """Return (F,) where a column has risen above `starts` and not yet fallen below `ends`; NaN resets it."""
     inside = np.zeros(len(values), np.bool_)
     is_in = False
     for k, value in enumerate(values.tolist()):
@@ -98,7 +98,7 @@ def between(values: Floats, starts: float, ends: float) -> Flags:
     return inside
 
 
-STEADY_S = 0.3  # a number that lies on a person for less is short_losses
+STEADY_S = 0.3  # a track that is on a person for a shorter time is ignored
 _BOX = ("left_px", "top_px", "width_px", "height_px")
 _PEOPLE = (
     *("frame", "id", "name", "x_m", "y_m", "distance_m", "is_counted", *_BOX, "whole_px"),
@@ -108,7 +108,7 @@ _ROBOT = ("frame", "x_m", "y_m", "heading_rad", "mode")
 
 
 class Visibility(IntEnum):
-    """What there is to be seen of a person."""
+    """Visibility of a person."""
 
     AWAY = 0
     SEEN = 1
@@ -117,17 +117,17 @@ class Visibility(IntEnum):
 
 
 class TrackingState(IntEnum):
-    """What the tracker has of a person."""
+    """State of a person's track."""
 
-    NOT_DUE = 0  # not there, wholly hidden, too near or too far
+    NOT_DUE = 0  # absent, wholly hidden, too near or too far away
     ON = 1
-    ADRIFT = 2  # the person's number lives on, but its box lies elsewhere
+    ADRIFT = 2  # the person's track exists, but its box is not on the person
     MISSED = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PersonHistory:
-    """One person in one run; all columns have F rows, one a frame."""
+    """One person in one run; all columns have F rows, one per frame."""
 
     id: int
     name: str
@@ -135,43 +135,43 @@ class PersonHistory:
     distance_m: Floats  # from the camera; NaN as above
     visible: Floats  # share of the whole silhouette; 0 as above
     occluded: Floats  # share hidden of what lies inside the image; NaN outside it
-    hider: tuple[str, ...]  # who or what hides most of the person; empty for nobody
+    hider: tuple[str, ...]  # main occluder, a person or an object; empty for none
     is_counted: Flags  # neither too near nor too far away
     view: Ints  # `Visibility`, with the thresholds of the event log
-    matched: Ints  # number of the track whose box lies on the person (IoU above 0.5), or 0
-    track: Ints  # the same without short_losses ones and short breaks
+    matched: Ints  # number of the track whose box is on the person (IoU above 0.5), or 0
+    track: Ints  # the same without short spans and short gaps
     iou: Floats  # of that box; NaN without one
-    offset_px: Floats  # of its middle from the truth's; NaN as above
+    offset_px: Floats  # distance of its centre from that of the ground truth; NaN as above
     state: Ints  # `TrackingState`
 
     @property
     def is_due(self) -> Flags:
-        """Where the person counts and can be seen: (F,)."""
+        """Whether the person is counted and visible: (F,)."""
         return _is_due(self.is_counted, self.view)
 
     def hider_in(self, start: int, end: int) -> str:
-        """Name who hides the person most often in some frames; empty for nobody."""
+        """Return the most frequent occluder in some frames; empty for none."""
         names = Counter(name for name in self.hider[max(start, 0) : end] if name)
         return names.most_common(1)[0][0] if names else ""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RunHistory:
-    """A run, its tables as far as they are needed, and everybody's history in it."""
+    """A run, its tables as far as they are needed, and the histories of all people."""
 
     run: FinishedRun
     files: RunFiles
 
     @property
     def steady(self) -> int:
-        """How many frames `STEADY_S` has."""
+        """Number of frames in `STEADY_S`."""
         return max(round(STEADY_S * self.run.rate_hz), 1)
 
     @cached_property
     def shown(self) -> dict[int, Flags]:
-        """For each confirmed track the frames (F,) in which it is shown.
+        """For each confirmed track, the frames (F,) in which it is shown.
 
-        Where tracks exist at images alone, as those made elsewhere, they are shown until the next image.
+        Tracks that exist only at frames with an image, as imported ones do, are shown until the next image.
         """
         frames, (_, tracks) = np.arange(self.run.frames), self.boxes
         at = self.newest if np.isin(tracks.frame - 1, self.newest).all() else frames
@@ -179,26 +179,26 @@ class RunHistory:
 
     @cached_property
     def is_on_floor(self) -> bool:
-        """Whether the tracker gave no boxes, but places on the floor."""
+        """Whether the tracker has positions on the floor, but no boxes."""
         return is_on_floor_alone(self.files.beliefs)
 
     @cached_property
     def yardstick(self) -> BoxReference:
-        """What the tracker's boxes are held against, as in the scores of the run."""
+        """Ground truth boxes to compare with, as in the scores of the run."""
         about, camera = self.run.about, own_camera(self.run.folder)
         tracker = None if about.adopted else about.tracker
         return BoxReference(camera, kind_of_boxes(self.run.folder, camera, tracker, BoxKind(about.boxes)))
 
     @cached_property
     def camera(self) -> str:
-        """The camera whose images say which people were visible; if scored on the floor, one with boxes."""
+        """The camera that determines visibility; a camera with boxes if the run is scored on the floor."""
         if self.is_on_floor:
             return (*boxed_cameras(self.run.folder), THERMAL)[0]
         return self.yardstick.camera
 
     @cached_property
     def view(self) -> CameraConfig:
-        """That camera's settings; of `thermal` the usual ones, where the scenario cannot be read."""
+        """Settings of that camera; the default ones of `thermal` if the scenario is unreadable."""
         try:
             return cameras_of(self.run.folder)[self.camera]
         except BadInput:
@@ -208,23 +208,23 @@ class RunHistory:
 
     @property
     def newest(self) -> Ints:
-        """For each frame (F,) the one, from 0, in which that camera took its newest image."""
+        """For each frame (F,), the frame, from 0, of that camera's newest image."""
         frames = np.arange(self.run.frames)
         return frames - frames % self.every
 
     @property
     def every(self) -> int:
-        """How many frames there are from one image of that camera to the next."""
+        """Number of frames from one image of that camera to the next."""
         return self.run.rate_hz // (self.view.rate_hz or self.run.rate_hz)
 
     @cached_property
     def counted_m(self) -> tuple[float, float]:
-        """The distances [m] from that camera between which people count."""
+        """Minimum and maximum distance [m] from that camera at which people are counted."""
         return counted_m(self.view.camera)
 
     @cached_property
     def seen(self) -> pa.Table:
-        """What is true of people in that camera's images."""
+        """Ground truth of people in that camera's images."""
         if self.camera == THERMAL:
             return self.files.people
         _, table = truth_files(self.run.folder, self.camera)
@@ -232,7 +232,7 @@ class RunHistory:
 
     @cached_property
     def boxes(self) -> tuple[TrueBoxes, TrackBoxes]:
-        """What is matched: boxes in that camera's image, or, without any, squares on the floor."""
+        """Boxes to match: in that camera's image, or squares on the floor for a tracker without boxes."""
         files = self.files
         if self.is_on_floor:
             return as_squares(self.run.folder, files.people, files.beliefs, files.robot)
@@ -242,28 +242,28 @@ class RunHistory:
 
     @cached_property
     def people(self) -> tuple[PersonHistory, ...]:
-        """The history of everybody, in the scenario's order."""
+        """Histories of all people, in the scenario's order."""
         lying = _match_boxes(*self.boxes)
         if self.is_on_floor:
-            lying.offset[:] = np.nan  # it is none of pixels
+            lying.offset[:] = np.nan  # positions on the floor have no offset in pixels
         return tuple(_person_history(self, who, lying) for who in np.unique(self.seen["id"]).tolist())
 
     def called(self, name: str) -> PersonHistory:
-        """The history of a person."""
+        """Return the history of a person by name."""
         return next(person for person in self.people if person.name == name)
 
 
 def read_files(run: FinishedRun) -> RunFiles:
-    """Read of a run's tables what stories need.
+    """Read the tables of a run that histories need.
 
     Raises:
-        BadInput: a table is missing or spoilt.
+        BadInput: a table is missing or unreadable.
     """
     return run.files(_PEOPLE, _ROBOT)
 
 
 def _match_boxes(truth: TrueBoxes, tracks: TrackBoxes) -> Any:
-    """Tracks assigned to people: records frame (from 0), person, number, iou, offset [px]."""
+    """Return tracks assigned to people: records of frame (from 0), person, number, iou, offset [px]."""
     pairs = pair_up(truth, tracks)
     chosen = associate(pairs)
     target, candidate = pairs.target[chosen], pairs.candidate[chosen]
@@ -285,7 +285,7 @@ def _person_history(history: RunHistory, person: int, lying: Any) -> PersonHisto
     newest = history.newest
 
     def spread(values: object, at: Ints = at) -> Floats:
-        """Spread values over all frames (F,), each as in the camera's newest image; NaN elsewhere."""
+        """Return values for all frames (F,) from the camera's newest image; NaN elsewhere."""
         column = np.full(frames, np.nan)
         column[at] = values
         return np.asarray(column[newest])
@@ -329,7 +329,7 @@ def _view(occluded: Floats, is_inside: Flags) -> Ints:
 
 
 def _state(track: Ints, is_due: Flags, shown: dict[int, Flags]) -> Ints:
-    """What the tracker has: a person's number is the last that lay on the person."""
+    """Return the tracking states; a person's number is the last one that was on the person."""
     state = np.zeros(len(track), np.int64)
     last = 0
     for k, number in enumerate(track.tolist()):

@@ -1,4 +1,4 @@
-"""Find where people's numbers changed or went to other people, and what could be seen of them then."""
+"""Find identity changes and identity transfers, and the visibility of the people at that time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,14 +19,14 @@ from peopleboy.scenarios.report.findings.histories import (
 )
 from peopleboy.scenarios.report.findings.sentences import Cause, seconds, spoken
 
-BEFORE_S = 0.5  # what happened this long before a loss may be its cause
-_CUT_OFF = 0.85  # share of a person nobody hides that is inside the image, below which that is worth telling
+BEFORE_S = 0.5  # an event this long before a loss may be its cause
+_CUT_OFF = 0.85  # visible share of an unoccluded person below which the image border is reported as a cause
 
 
 def find_cause(history: RunHistory, person: PersonHistory, start: int, end: int) -> Cause:
-    """Find what there was to be seen of a person between two indices: what lasted longest, the worst first.
+    """Find the cause of a loss between two indices: the visibility that lasted longest, the worst first.
 
-    Where nothing was amiss then, it is what was amiss just before, if anything was.
+    If the person was in plain sight, it is a cause from just before, if there was one.
     """
     cause = _amiss(history, person, start, end)
     if cause is not None:
@@ -41,7 +41,7 @@ def find_cause(history: RunHistory, person: PersonHistory, start: int, end: int)
 
 
 def _amiss(history: RunHistory, person: PersonHistory, start: int, end: int) -> Cause | None:
-    """Find why a person could not be seen well between two indices; None if there is no reason."""
+    """Find why a person was not fully visible between two indices; None without a reason."""
     first, last = max(start, 0), end + 1
     view = person.view[first:last]
     wholly, away = int((view == Visibility.WHOLLY).sum()), int((view == Visibility.AWAY).sum())
@@ -64,7 +64,7 @@ def _amiss(history: RunHistory, person: PersonHistory, start: int, end: int) -> 
 
 
 class Outcome(Enum):
-    """How it ended with a person."""
+    """State of a person's track at the end of a run."""
 
     NEVER_DUE = auto()
     TRACKED = auto()
@@ -73,7 +73,7 @@ class Outcome(Enum):
 
 
 def outcome_of(history: RunHistory, person: PersonHistory) -> Outcome:
-    """Return whether a track lay on a person in the last second of being due, and what came then."""
+    """Return the outcome: whether a track was on a person in the last second in which it was due."""
     due = steady_due(history, person)
     if len(due) == 0:
         return Outcome.NEVER_DUE
@@ -84,13 +84,13 @@ def outcome_of(history: RunHistory, person: PersonHistory) -> Outcome:
 
 
 def steady_due(history: RunHistory, person: PersonHistory) -> Ints:
-    """Give the indices at which a person is due for more than a glimpse; of glimpses if there is no more."""
+    """Return the indices at which a person is due, without short spans unless there are no others."""
     steady = np.flatnonzero(settle(person.is_due.astype(np.int64), history.steady))
     return steady if len(steady) else np.flatnonzero(person.is_due)
 
 
 def _is_hidden_to_end(history: RunHistory, person: PersonHistory) -> bool:
-    """Return whether a person without a track stayed wholly hidden to the end, but for moments."""
+    """Return whether a person without a track stayed wholly hidden to the end, apart from moments."""
     after = person.view[np.flatnonzero(person.track)[-1] + 1 :]
     hidden = np.flatnonzero(after == Visibility.WHOLLY)
     if len(hidden) == 0:
@@ -99,43 +99,39 @@ def _is_hidden_to_end(history: RunHistory, person: PersonHistory) -> bool:
     return Visibility.AWAY not in after and not settle(in_view, history.steady).any()
 
 
-REIDENTIFIED_S = (
-    1.0  # within which who has another number, or whose number is on another one, may be known again
-)
+REIDENTIFIED_S = 1.0  # a person who gets the own number back within this time is re-identified
 LONG_AWAY_S = 2.0
 
 
 class ChangeKind(Enum):
-    """What a change of numbers means."""
+    """Kind of a change of numbers."""
 
-    LOST = auto()  # a fresh number, which stayed
-    TAKEN = auto()  # that of another person, reported as a `Transfer`
-    FOR_A_MOMENT = auto()  # an own one came back within `REIDENTIFIED_S`
+    LOST = auto()  # a new number, which stayed
+    TAKEN = auto()  # the number of another person, reported as a `Transfer`
+    FOR_A_MOMENT = auto()  # an own number came back within `REIDENTIFIED_S`
     BACK = auto()  # to a number that the person had before
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IdentityChange:
-    """A person's number became another one."""
+    """A person's number changed."""
 
     person: str
-    last_frame: int  # with the old number; from 1
+    last_frame: int  # last with the old number; from 1
     first_frame: int  # with the new one
     time_s: float  # of the latter
     old: int
     new: int
     turn: ChangeKind
-    taken_from: str  # whose number the new one was before; empty for a fresh or an own number
-    cause: Cause  # what there was to be seen of the person in between
-    is_return: bool  # the person had been out of the image for so long that few would have known it
-    reidentified_after_s: (
-        float  # for how long the person had other numbers, of a way back to an own one; else 0
-    )
+    taken_from: str  # earlier owner of the new number; empty for a new or own number
+    cause: Cause  # visibility of the person in between
+    is_return: bool  # the person was out of the image for a long time
+    reidentified_after_s: float  # time with other numbers before an own one came back; else 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transfer:
-    """A number went from one person to another."""
+    """A number passed from one person to another."""
 
     number: int
     giver: str
@@ -143,18 +139,18 @@ class Transfer:
     last_frame: int  # on the first; from 1
     first_frame: int  # on the second
     time_s: float  # of the latter
-    cause: Cause  # what there was to be seen of the first then
+    cause: Cause  # visibility of the first person then
 
 
 class _Held(NamedTuple):
-    """A number lay on a person."""
+    """A number was on a person."""
 
     person: PersonHistory
     span: Span
 
 
 def find_changes(history: RunHistory) -> list[IdentityChange]:
-    """Find all changes of numbers that lasted `STEADY_S`, in time."""
+    """Find all changes of numbers that lasted `STEADY_S`, in time order."""
     holders = _holders(history)
     changes = []
     for person in history.people:
@@ -168,7 +164,7 @@ def find_changes(history: RunHistory) -> list[IdentityChange]:
 
 
 def find_transfers(history: RunHistory) -> list[Transfer]:
-    """Find where numbers passed to other people, in time, unless they were back within `REIDENTIFIED_S`."""
+    """Find numbers that passed to other people, in time order, unless back within `REIDENTIFIED_S`."""
     transfers = []
     for number, holders in _holders(history).items():
         own, short = holders[0].person, REIDENTIFIED_S * history.run.rate_hz
@@ -181,12 +177,12 @@ def find_transfers(history: RunHistory) -> list[Transfer]:
 
 
 def is_return(history: RunHistory, person: PersonHistory, start: int, end: int) -> bool:
-    """Whether a person was out of the image for long between two indices."""
+    """Return whether a person was out of the image for a long time between two indices."""
     return int((person.view[start:end] == Visibility.AWAY).sum()) >= LONG_AWAY_S * history.run.rate_hz
 
 
 def _holders(history: RunHistory) -> dict[int, list[_Held]]:
-    """Tell on whom each number lay, in time; the first one is whose it is."""
+    """Return the people that each number was on, in time order; the first is its owner."""
     holders: dict[int, list[_Held]] = {}
     for person in history.people:
         for span in spans(person.track):
@@ -222,7 +218,7 @@ def _change(
 def _turn(
     history: RunHistory, held: Sequence[Span], k: int, is_own: bool, is_taken: bool
 ) -> tuple[ChangeKind, float]:
-    """Return what the change to `held[k]` means, and of a way back how long other numbers were there."""
+    """Return the kind of the change to `held[k]`, and the time with other numbers if an own one came back."""
     rate, new = history.run.rate_hz, held[k]
     if is_own:
         last = max(n for n in range(k) if held[n].value == new.value)

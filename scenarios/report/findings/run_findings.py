@@ -1,6 +1,6 @@
-"""Find what went wrong in a run, and choose what a reader sees first: the headline and the worst moments.
+"""Find failures in a run, and choose the headline and the worst moments of its report.
 
-Numbers that passed to another person come first, as nothing is graver.
+Numbers that passed to another person come first, as the gravest failures.
 """
 
 from collections.abc import Iterator, Sequence
@@ -41,84 +41,84 @@ from peopleboy.wording import counted
 
 
 class RunFindings(RunHistory):
-    """A run, and what is found out about it."""
+    """A run and its findings."""
 
     @cached_property
     def changes(self) -> list[IdentityChange]:
-        """Changes of people's numbers, in time."""
+        """Changes of people's numbers, in time order."""
         return find_changes(self)
 
     @cached_property
     def transfers(self) -> list[Transfer]:
-        """Numbers that went to another person, in time."""
+        """Numbers that passed to another person, in time order."""
         return find_transfers(self)
 
     @cached_property
     def losses(self) -> list[Loss]:
-        """Tracks that were shown no more, in time."""
+        """Losses of tracks, in time order."""
         return find_losses(self)
 
     @cached_property
     def short_losses(self) -> ShortLosses:
-        """Losses that are not listed one by one."""
+        """Short losses, which are not listed individually."""
         return count_short_losses(self)
 
     @cached_property
     def false_tracks(self) -> list[FalseTrack]:
-        """Tracks on nobody, the longest first."""
+        """False tracks, the longest first."""
         return find_false_tracks(self)
 
     @property
     def due(self) -> int:
-        """How many people were to be tracked at some time."""
+        """Number of people who were due to be tracked at some time."""
         return sum(bool(person.is_due.any()) for person in self.people)
 
     def people_with(self, *endings: Outcome) -> list[str]:
-        """Name those with whom it ended in one of these ways."""
+        """Return the names of people with one of these outcomes."""
         return [spoken(person.name) for person in self.people if outcome_of(self, person) in endings]
 
     @property
     def lost(self) -> list[IdentityChange]:
-        """Changes of people's numbers to fresh ones for good."""
+        """Changes of people's numbers to new numbers that stayed."""
         return [change for change in self.changes if change.turn is ChangeKind.LOST]
 
     @property
     def reidentified(self) -> list[IdentityChange]:
-        """Changes of people's numbers back to their own."""
+        """Changes of people's numbers back to their own ones."""
         return [change for change in self.changes if change.turn is ChangeKind.BACK]
 
     @property
     def faults(self) -> int:
-        """How many identities went wrong."""
+        """Number of identity errors."""
         return len(self.transfers) + len(self.lost)
 
     @property
     def contacts(self) -> list[LogLine]:
-        """Times at which the robot touched a person or an object."""
+        """Events in which the robot touches a person or an object."""
         return [line for line in self.run.events if line.kind == "contact starts"]
 
 
 def analyse_run(run: FinishedRun) -> RunFindings:
-    """Find out what became of everybody in a run.
+    """Analyse the tracking of all people in a run.
 
     Raises:
-        BadInput: a table is missing or spoilt.
+        BadInput: a table is missing or unreadable.
     """
     return RunFindings(run=run, files=read_files(run))
 
 
-_APART_S = 1.0  # two moments of one person nearer than this are one
+_APART_S = 1.0  # moments of one person closer than this are merged
 
 
 def headline(runs: Sequence[RunFindings]) -> str:
-    """Return who was tracked to the end, and where identities were lost, in one run or in several."""
+    """Summarise people tracked to the end and identity errors, in one run or in several."""
     is_of_many = len(runs) > 1
     text = "; ".join(finding.sentence(is_of_many_runs=is_of_many) for finding in _findings(runs))
     return f"{counted(len(runs), 'run')}: {text}." if is_of_many else f"{text}."
 
 
 def _findings(runs: Sequence[RunFindings]) -> Iterator[Finding]:
-    """Yield what was found, the gravest first."""
+    """Yield the findings, the gravest first."""
     transfers = [one for run in runs for one in run.transfers]
     if transfers:
         one = transfers[0]
@@ -154,7 +154,7 @@ def _runs_with(runs: Sequence[RunFindings], what: str) -> str:
 
 
 def _people(runs: Sequence[RunFindings], due: int) -> dict[str, object]:
-    """Give the values of the sentence about people: how many were tracked to the end, and which were not."""
+    """Return the values of the sentence about people: numbers and names tracked to the end or not."""
     hidden = [name for run in runs for name in run.people_with(Outcome.HIDDEN)]
     others = [name for run in runs for name in run.people_with(Outcome.LOST, Outcome.HIDDEN)]
     tracked, first = due - len(others), runs[0]
@@ -162,7 +162,7 @@ def _people(runs: Sequence[RunFindings], due: int) -> dict[str, object]:
     never = len(first.people) - first.due
     if never:
         nearest_m, farthest_m = first.counted_m
-        asides.append(f"{never} more never came within {nearest_m:g} to {farthest_m:g} m in sight")
+        asides.append(f"{never} more never visible at {nearest_m:g} to {farthest_m:g} m")
     all_of_them = "both" if due == 2 else "all"
     return {
         "aside": f" ({'; '.join(asides)})" if asides else "",
@@ -175,18 +175,18 @@ def _people(runs: Sequence[RunFindings], due: int) -> dict[str, object]:
 
 
 class BadMoment(NamedTuple):
-    """What went wrong, and when."""
+    """A failure and its time."""
 
-    # To choose by: a number on another person is worst, then a lost identity, contacts, false tracks, ...
+    # Order: a number on another person is worst, then a lost identity, contacts, false tracks, ...
     badness: float
-    frames: tuple[int, ...]  # one or two to look at, from 1
+    frames: tuple[int, ...]  # one or two frames to show, from 1
     title: str
     text: str
-    subject: str  # the person or thing that it is about
+    subject: str  # the person or object concerned
 
 
 def worst_moments(found: RunFindings, count: int) -> list[BadMoment]:
-    """Choose at most `count` moments, in time; where nothing went wrong, the boxes that fit worst."""
+    """Return at most `count` moments in time order; without failures, the boxes that fit worst."""
     moments = [*_identity_moments(found), *_contacts(found), *_false_tracks(found)]
     for person in found.people:
         moments += _gaps(found, person)
@@ -205,7 +205,7 @@ def _is_same(found: RunFindings, one: BadMoment, other: BadMoment) -> bool:
 
 
 def _moment(kind: str, badness: float, frames: tuple[int, ...], subject: str, **values: Any) -> BadMoment:
-    """Render a moment of a kind of `MOMENTS`."""
+    """Return a moment of a kind of `MOMENTS`."""
     named = {"person": spoken(subject)} | values
     title, text = (template.format(**named) for template in MOMENTS[kind])
     return BadMoment(badness, frames, title, text, subject)
@@ -236,7 +236,7 @@ def _false_tracks(found: RunFindings) -> Iterator[BadMoment]:
 
 
 def _gaps(found: RunFindings, person: PersonHistory) -> Iterator[BadMoment]:
-    """Times at which a person who was seen had no box."""
+    """Yield times at which a visible person had no box."""
     for span in spans(person.state):
         seen = person.visible[span.start : span.end]
         well = np.flatnonzero(seen > SEEN).tolist()

@@ -1,10 +1,10 @@
-"""Render findings as sentences: every sentence of a report about a run stands in one of these tables."""
+"""Render findings as sentences: these tables have every sentence of a report about a run."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-# What could be seen of a person when something went wrong, as the rest of "Anna ...".
+# Visibility of a person at a failure, as the rest of "Anna ...".
 CAUSES: Final = {
     "left": "left the image",
     "away": "was out of the image for {duration}",
@@ -18,7 +18,7 @@ CAUSES: Final = {
     "no person": "there was no person",
 }
 
-# What came of a lost track.
+# Outcome of a lost track.
 AFTERWARDS: Final = {
     "never": "it never came back",
     "again": "shown again after {gap}{late}, {where}",
@@ -29,7 +29,7 @@ AFTERWARDS: Final = {
     "lost": "{person} was not found again",
 }
 
-# The parts of a headline: of one thing in one run, of several in one run, and of those in several runs.
+# Parts of a headline: for one finding in one run, for several in one run, and for several runs.
 HEADLINES: Final = {
     "transfer": (
         "Number {number} passed from {person} to {other} at {time}, when {person} {cause}",
@@ -41,7 +41,7 @@ HEADLINES: Final = {
         "{count} people, {which} tracked to the end{aside}",
         "of {people} {tracked} tracked to the end{hidden}",
     ),
-    "no people": ("No person was there to be found",) * 3,
+    "no people": ("No person was due to be tracked",) * 3,
     "lost": (
         "identity lost once, at {time}, when {person} {cause}",
         "identity lost {times}, first at {time}, when {person} {cause}",
@@ -61,35 +61,35 @@ HEADLINES: Final = {
     ),
 }
 
-# Title and text of a moment at which something went wrong.
+# Title and text of a failure.
 MOMENTS: Final = {
     "transfer": (
         "Number {number} passes from {person} to {other}",
-        "{person} {cause}; from then on {other} was number {number}.",
+        "{person} {cause}; from then on {other} had number {number}.",
     ),
-    "lost": ("{person} loses number {old}", "{person} {cause}, and was then number {new}."),
+    "lost": ("{person} loses number {old}", "{person} {cause}, and then had number {new}."),
     "contact": ("Contact with {person}", "The robot touches {person}."),
-    "false track": ("Number {number} is a false track", "It lasts {duration} and never lies on a person."),
-    "missed": ("{person} is not found", "{person} has no track for {duration} while up to {share} visible."),
+    "false track": ("Number {number} is a false track", "It lasts {duration} and is never on a person."),
+    "missed": ("{person} is not found", "{person} has no track for {duration}, with up to {share} visible."),
     "adrift": (
-        "{person} is left by the box",
-        "{person} has a track whose box lies elsewhere for {duration} while up to {share} visible.",
+        "The box of {person} drifts away",
+        "The box of {person} is not on the person for {duration}, with up to {share} visible.",
     ),
     "worst fit": (
-        "The box that fits {person} worst",
-        "Box and truth overlap by {iou}; {share} of {person} is visible.",
+        "Worst-fitting box of {person}",
+        "The IoU of box and ground truth is {iou}; {share} of {person} is visible.",
     ),
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """What could be seen of a person when something went wrong; `str` gives the rest of "Anna ...".
+    """Visibility of a person at a failure; `str` gives the rest of "Anna ...".
 
     Attributes:
         kind: one of `CAUSES`.
-        values: for its template.
-        is_before: whether that was just before, and the person in plain sight at the moment itself.
+        values: values of its template.
+        is_before: whether the cause ended just before, with the person in plain sight at the failure itself.
     """
 
     kind: str
@@ -104,12 +104,12 @@ class Cause:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One kind of thing that was found, in one run or in several.
+    """One kind of finding, in one run or in several.
 
     Attributes:
         kind: one of `HEADLINES`.
-        count: how often.
-        values: for its template.
+        count: number of occurrences.
+        values: values of its template.
     """
 
     kind: str
@@ -117,13 +117,13 @@ class Finding:
     values: Mapping[str, object] = field(default_factory=dict)
 
     def sentence(self, *, is_of_many_runs: bool) -> str:
-        """Render it as a part of a headline."""
+        """Return the finding as a part of a headline."""
         template = HEADLINES[self.kind][2 if is_of_many_runs else min(self.count, 2) - 1]
         return template.format(times=times(self.count), count=self.count, **self.values)
 
 
 def spoken(name: str) -> str:
-    """Write a key of a file as a name in a sentence: Anna, Floor lamp 1."""
+    """Return a key of a file as a name in a sentence: Anna, Floor lamp 1."""
     words = name.replace("_", " ")
     return words[:1].upper() + words[1:]
 
@@ -134,10 +134,10 @@ def listed(words: Sequence[str]) -> str:
 
 
 def times(count: int) -> str:
-    """Return how often."""
+    """Return a number of times as text."""
     return {1: "once", 2: "twice"}.get(count, f"{count} times")
 
 
 def seconds(time_s: float) -> str:
-    """Write a time or a duration so that its unit stays on the line."""
+    """Format a time or a duration, with its unit on the same line."""
     return f"{time_s:.1f}\u00a0s"

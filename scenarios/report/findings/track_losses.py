@@ -1,4 +1,4 @@
-"""Where tracks ended, and why, as far as the data say."""
+"""Find the losses of tracks, and their causes as far as the data show them."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -26,49 +26,47 @@ from peopleboy.scenarios.report.findings.identity_changes import (
 )
 from peopleboy.scenarios.report.findings.sentences import AFTERWARDS, Cause, seconds, spoken
 
-_DECAY_S = 1.5  # over which the confidence is looked back at
-_DECAYED = 0.15  # a fall by this much is worth telling
+_DECAY_S = 1.5  # time before a loss over which the confidence is examined
+_DECAYED = 0.15  # a larger fall is reported
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loss:
-    """A track was shown no more."""
+    """Loss of a track."""
 
     track: int
-    frame: int  # the first without it
-    time_s: float  # of that
-    owner: str  # on whom it lay last; empty for nobody
-    why: str  # what happened to the owner, and to the confidence
-    believed: str  # why the tracker gave it up, by its own log; empty if that does not say
+    frame: int  # the first frame without the track
+    time_s: float  # time of that frame
+    owner: str  # the person it was last on; empty for none
+    why: str  # visibility of the owner, and course of the confidence
+    believed: str  # reason in the tracker's log; empty without one
     afterwards: str
-    is_bad: bool  # the person could be seen and lost the number
+    is_bad: bool  # the person was visible and lost the number
 
 
 @dataclass(frozen=True, slots=True)
 class ShortLosses:
-    """Losses that are not listed one by one."""
+    """Numbers of losses that are not listed individually."""
 
-    breaks: int  # after which the same number was shown again within `STEADY_S`
-    ends: int  # of tracks that had been shown for less than that
+    breaks: int  # gaps shorter than `STEADY_S`
+    ends: int  # ends of tracks that were shown for less than that
 
     @property
     def words(self) -> str:
-        """What is left out and why, in sentences; empty if nothing is."""
+        """Sentences about omitted losses; empty without any."""
         short, texts = f"less than {STEADY_S:g} s", []
         if self.breaks:
             texts = [
-                f"Losses of {short} ({self.breaks} of them) are left out: the same number was shown again."
+                f"Losses of {short} ({self.breaks} of them) are omitted: the same number was shown again."
             ]
         if self.ends:
-            texts.append(
-                f"Ends of tracks that had been shown for {short} ({self.ends} of them) are left out."
-            )
-        return " ".join([*texts, "All of them are in events.jsonl."]) if texts else ""
+            texts.append(f"Ends of tracks that had been shown for {short} ({self.ends} of them) are omitted.")
+        return " ".join([*texts, "events.jsonl lists all of them."]) if texts else ""
 
 
 @dataclass(frozen=True, slots=True)
 class FalseTrack:
-    """A track that never lay on anybody; frames from 1, the last included."""
+    """A track that was never on a person; frames from 1, the last one included."""
 
     track: int
     first_frame: int
@@ -76,9 +74,9 @@ class FalseTrack:
 
 
 def find_losses(history: RunHistory) -> list[Loss]:
-    """Find every time that a track ceased to be shown before the end, in time.
+    """Find all losses of tracks before the end of the run, in time order.
 
-    ShortLosses ones are left out, and so are tracks that went on under a number known from before.
+    Short losses are omitted, and so are tracks that continued under an earlier number.
     """
     losses = [
         _loss(history, number, end, steady)
@@ -89,7 +87,7 @@ def find_losses(history: RunHistory) -> list[Loss]:
 
 
 def count_short_losses(history: RunHistory) -> ShortLosses:
-    """Count the losses that `find_losses` leaves out, but for tracks that went on under another number."""
+    """Count the short losses that `find_losses` omits, not tracks that continued under an earlier number."""
     breaks = ends = 0
     for number, steady in _steady_tracks(history).items():
         for end in _ends(history, number, history.shown[number]):
@@ -99,7 +97,7 @@ def count_short_losses(history: RunHistory) -> ShortLosses:
 
 
 def _ends(history: RunHistory, number: int, shown: Flags) -> Iterator[int]:
-    """Yield the indices at which a track is shown no more, though nobody goes on as a person known again."""
+    """Yield the indices at which a track ends without continuing under an earlier number."""
     known = {
         line.frame - 1
         for line in history.run.events
@@ -111,7 +109,7 @@ def _ends(history: RunHistory, number: int, shown: Flags) -> Iterator[int]:
 
 
 def find_false_tracks(history: RunHistory) -> list[FalseTrack]:
-    """Find the tracks that never lay on anybody, the longest first."""
+    """Find the tracks that were never on a person, the longest first."""
     owned = {int(number) for person in history.people for number in np.unique(person.matched)}
     frames = {number: (np.flatnonzero(shown) + 1).tolist() for number, shown in history.shown.items()}
     false_tracks = [FalseTrack(number, at[0], at[-1]) for number, at in frames.items() if number not in owned]
@@ -119,7 +117,7 @@ def find_false_tracks(history: RunHistory) -> list[FalseTrack]:
 
 
 def _steady_tracks(history: RunHistory) -> dict[int, Ints]:
-    """For each confirmed track 1 where it is shown, but for short breaks and glimpses, else 0: (F,)."""
+    """Return for each confirmed track 1 where it is shown, without short gaps and spans, else 0: (F,)."""
     return {n: settle(shown.astype(np.int64), history.steady) for n, shown in history.shown.items()}
 
 
@@ -149,7 +147,7 @@ def _loss(history: RunHistory, number: int, end: int, steady: Ints) -> Loss:
 def _shown_again(
     history: RunHistory, number: int, owner: PersonHistory | None, gap: tuple[int, int]
 ) -> tuple[str, bool]:
-    """Say on whom a track lay that was shown again after a gap, and whether that is whom it was on before."""
+    """Describe the person a track was on after a gap, and whether it is the same person as before."""
     end, again = gap
     gap_s = (again - end) / history.run.rate_hz
     break_at = np.flatnonzero(~history.shown[number][again:])
@@ -170,13 +168,13 @@ def _shown_again(
 
 
 def _first_on(lies: Sequence[tuple[PersonHistory, Flags]]) -> tuple[int, PersonHistory] | None:
-    """Return when and on whom a track lay first, of flags (N,) for each person; None if it lay on nobody."""
+    """Return the first index and person of a track, from flags (N,) for each person; None without any."""
     first = [(int(at[0]), person) for person, flags in lies if len(at := np.flatnonzero(flags))]
     return min(first, key=lambda one: one[0], default=None)
 
 
 def _afterwards(history: RunHistory, person: PersonHistory, number: int, end: int) -> tuple[str, bool]:
-    """Describe what became of a person whose track was lost, and whether that is bad."""
+    """Describe the outcome for a person whose track was lost, and whether it is bad."""
     later = [span for span in spans(person.track[end:]) if span.value]
     name, rate = spoken(person.name), history.run.rate_hz
     if later and later[0].value != number:
@@ -199,7 +197,7 @@ def _say(kind: str, **values: object) -> str:
 
 
 def _belief(history: RunHistory, number: int, end: int, own: PersonHistory | None) -> str:
-    """Return the tracker's own reason, and say on whom the tracks lay that it names."""
+    """Return the tracker's own reason, with the people that the tracks named there were on."""
     about, since = ("lost", f"track {number}"), end + 1 - history.every
     events = (line for line in history.run.events if since < line.frame <= end + 1)
     why = next((line.why for line in events if (line.kind, line.who) == about), "")
@@ -209,7 +207,7 @@ def _belief(history: RunHistory, number: int, end: int, own: PersonHistory | Non
 
 
 def _whose(history: RunHistory, number: int, end: int, own: PersonHistory | None) -> str:
-    """Say on whom a track lay before an index, in brackets; nothing for nobody."""
+    """Return the person a track was on before an index, in brackets; empty for none."""
     owner = _owner(history.people, number, end)
     if owner is None:
         return ""
@@ -219,7 +217,7 @@ def _whose(history: RunHistory, number: int, end: int, own: PersonHistory | None
 
 
 def _during_faults(history: RunHistory, end: int) -> str:
-    """Name the faults that there were at index `end`; nothing if there were none."""
+    """Return the faults active at index `end`; empty without any."""
     there: dict[str, None] = {}
     for line in history.run.events:
         if line.frame > end + 1:
@@ -232,7 +230,7 @@ def _during_faults(history: RunHistory, end: int) -> str:
 
 
 def _confidence(history: RunHistory, number: int, end: int) -> str:
-    """Return how the confidence went until index `end`."""
+    """Describe the course of the confidence until index `end`."""
     beliefs = history.files.beliefs
     rows = beliefs.filter(np.asarray(beliefs["id"].to_numpy() == number))
     frame, value = rows["frame"].to_numpy() - 1, rows["confidence"].to_numpy()
@@ -246,7 +244,7 @@ def _confidence(history: RunHistory, number: int, end: int) -> str:
 
 
 def _owner(people: Sequence[PersonHistory], number: int, end: int) -> PersonHistory | None:
-    """Return the person that a track followed last before an index."""
+    """Return the person that a track was last on before an index."""
     last = {person.id: np.flatnonzero(person.track[:end] == number) for person in people}
     found = [person for person in people if len(last[person.id])]
     return max(found, key=lambda person: int(last[person.id][-1]), default=None)
