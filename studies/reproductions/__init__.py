@@ -1,1 +1,1 @@
-"""The tables and figures of the two sources, measured again: what is wanted, how it is measured, one page."""
+"""Reproduce the tables and figures of the sources, and write a page that compares them."""

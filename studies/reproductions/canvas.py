@@ -1,4 +1,4 @@
-"""What all figures share: a canvas, labels, images and boxes on axes; a figure as SVG or as PNG address."""
+"""Drawing functions of all figures: canvas, labels, images and boxes on axes; export as SVG or PNG."""
 
 import base64
 import io
@@ -23,7 +23,7 @@ COLOURS = 256
 
 
 def canvas(height_in: float, width_in: float = WIDTH_IN) -> Figure:
-    """Begin a figure."""
+    """Return a new figure."""
     figure = Figure((width_in, height_in), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
@@ -45,16 +45,16 @@ def label(
     legend: float = 0.0,
     **style: Any,
 ) -> None:
-    """Give axes a title and labels, and no more lines than they need.
+    """Set title and labels of axes, and remove unneeded lines.
 
     Args:
-        axes: what is labelled.
-        title: above them.
-        x: below them.
-        y: beside them.
+        axes: the axes.
+        title: their title.
+        x: label of the x axis.
+        y: label of the y axis.
         is_plan: whether both axes have the same scale.
-        legend: size of its letters; none if 0.
-        style: of the legend.
+        legend: font size of the legend; no legend if 0.
+        style: style of the legend.
     """
     if is_plan:
         axes.set_aspect("equal")
@@ -75,13 +75,13 @@ def show_image(axes: Axes, image: NDArray[Any], title: str, **style: Any) -> Non
 
 
 def frame_box(axes: Axes, box: Box, colour: str, **style: Any) -> None:
-    """Draw a box's frame."""
+    """Draw the outline of a box."""
     left, top, width, height = box
     axes.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor=colour, **style))
 
 
 def png_address(figure: Figure) -> str:
-    """Draw a figure as a PNG data address of few colours; the same figure gives the same bytes."""
+    """Return a figure as the data URL of a PNG with few colours; equal figures give equal bytes."""
     drawn, few = io.BytesIO(), io.BytesIO()
     figure.savefig(drawn, dpi=DOTS, facecolor="white")
     picture = Image.open(drawn).convert("RGB")
@@ -98,7 +98,7 @@ def svg_axes(width_in: float, height_in: float) -> tuple[Figure, Axes]:
 
 
 def finish(axes: Axes) -> None:
-    """Give axes small labels, and horizontal lines behind what is drawn."""
+    """Set small labels, and horizontal grid lines behind the data."""
     axes.tick_params(labelsize=8)
     axes.grid(axis="y", linewidth=0.4, alpha=0.6)
     axes.set_axisbelow(True)
@@ -106,7 +106,7 @@ def finish(axes: Axes) -> None:
 
 
 def svg(figure: Figure, salt: str) -> bytes:
-    """Return a figure as SVG; parts are named by a salt, so that the same figure gives the same bytes."""
+    """Return a figure as SVG; ids are salted, so that equal figures give equal bytes."""
     buffer = io.BytesIO()
     with rc_context({"svg.hashsalt": salt}):
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})

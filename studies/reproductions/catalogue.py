@@ -1,4 +1,4 @@
-"""Every table and figure of the sources, read from the files in `sources`, in the order of the page."""
+"""Read every table and figure of the sources from the files in `sources`, in the order of the page."""
 
 import inspect
 import sys
@@ -35,7 +35,7 @@ SOURCES: Final[Mapping[str, str]] = {
     "panoramic": "panoramic_2003",
     "situation": "situation_awareness",
 }
-"""Files of the sources by name, as `--paper` has it."""
+"""Files of the sources by name, as in `--paper`."""
 FOLDER: Final = Path(__file__).with_name("sources")
 
 
@@ -46,14 +46,14 @@ _MODULES: Final = (
 
 
 def picture(using: Measurement, *, name: str) -> str:
-    """Draw a picture that needs runs of its own, such as "panoramic_figures.draw_set_up"."""
+    """Return a picture that needs its own runs, such as "panoramic_figures.draw_set_up"."""
     (found,) = using.results([Unit(f"picture {name}", draw_picture, (name,))])
     address: str = found["picture"]
     return address
 
 
 def draw_picture(name: str) -> Result:
-    """Draw a figure of the folder `pictures`, and return it as an address."""
+    """Draw a figure of the folder `pictures`, and return it as a data URL."""
     module, _, function = name.partition(".")
     (found,) = (one for one in _MODULES if one.__name__.endswith(module))
     return {"picture": png_address(getattr(found, function)())}
@@ -67,25 +67,25 @@ KINDS: Final[Mapping[str, Callable[..., Any]]] = {
     and inspect.signature(function).return_annotation in (Samples, Figure, Figure | None, str)
     and "using" in inspect.signature(function).parameters
 }
-"""What measures or draws an experiment, by name: all functions that are called with a `Measurement`."""
+"""Functions that measure or draw an experiment, by name; all are called with a `Measurement`."""
 
 
 class Item(Strict):
     """A table or figure of a source, or a passage with values."""
 
     what: str
-    """its number there"""
+    """number in the source"""
     shows: str
-    """what it is about"""
+    """subject"""
     here: Texts = ()
     """ids of our experiments"""
     why: str = ""
-    """where else it is, or why there is nothing to measure"""
+    """another place where it is covered, or why there is nothing to measure"""
 
     @model_validator(mode="after")
     def _stands_somewhere(self) -> "Item":
         if bool(self.here) == bool(self.why):
-            raise ValueError("give either ids of experiments or words")
+            raise ValueError("give either ids of experiments or a reason")
         return self
 
 
@@ -93,9 +93,9 @@ class Source(Strict):
     """A thesis or paper."""
 
     about: str
-    """what it is"""
+    """description"""
     contents: Annotated[tuple[Item, ...], Field(strict=False)] = ()
-    """all that it has, in its order, as far as it is listed"""
+    """its tables, figures and passages, in its order, as far as they are listed"""
     experiments: Annotated[tuple[Experiment, ...], Field(strict=False)]
 
 
@@ -104,7 +104,7 @@ def read_source(path: Path) -> Source:
     """Read the file of a source.
 
     Raises:
-        BadInput: the file is wrong.
+        BadInput: the file is invalid.
     """
     data: dict[Any, Any] = read_yaml(path)
     try:
@@ -124,7 +124,7 @@ def _experiment(path: Path, number: str, data: Mapping[str, Any]) -> Experiment:
 
 
 def _function(place: str, declared: Mapping[str, Any]) -> Callable[[Measurement], Any]:
-    """Find a declaration's function, and give it its arguments.
+    """Return the function of a declaration, bound to its arguments.
 
     Raises:
         BadInput: the kind is unknown, or it takes other arguments.
@@ -148,7 +148,7 @@ PAPERS: Final[Mapping[str, Source]] = {
 EXPERIMENTS: Final[Mapping[str, Experiment]] = {
     one.id: one for source in PAPERS.values() for one in source.experiments
 }
-"""By id, in the order of the page."""
+"""Experiments by id, in the order of the page."""
 
 _PAPER_OF: Final = {one.id: name for name, source in PAPERS.items() for one in source.experiments}
 
@@ -165,7 +165,7 @@ def of_paper(paper: str) -> dict[str, Experiment]:
 
 
 def paper_of(number: str) -> str:
-    """Name the source, one of `PAPERS`, that an experiment is from, by its id."""
+    """Return the source of an experiment, one of `PAPERS`, from its id."""
     return _PAPER_OF[number]
 
 
@@ -173,11 +173,11 @@ def choose(names: Sequence[str], paper: str | None = None) -> list[Experiment]:
     """Find experiments by id or by number: "4.9" is figures 4.9a and 4.9b, "paper" all of 2005.
 
     Args:
-        names: ids or numbers; all there are if left out.
-        paper: one of `PAPERS`, to which they are limited.
+        names: ids or numbers; all if omitted.
+        paper: the source to search, one of `PAPERS`.
 
     Raises:
-        BadInput: nothing has this name.
+        BadInput: no experiment has this name.
     """
     among = EXPERIMENTS if paper is None else of_paper(paper)
     if not names:

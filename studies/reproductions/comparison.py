@@ -1,4 +1,4 @@
-"""Ours beside the source's: whether its claims hold here, and how each printed value compares."""
+"""Compare results with a source: whether its claims hold, and how each printed value compares."""
 
 import math
 from collections.abc import Iterator
@@ -24,34 +24,34 @@ from peopleboy.studies.reproductions.statistics import (
     unpaired,
 )
 
-BLIND: Final = 5.0  # [%] below which both values say only that no people are found
-MUCH: Final = 0.5  # of what the source gains, which a gain has to reach
+BLIND: Final = 5.0  # [%] if both values are lower, too few people are found for a decision
+MUCH: Final = 0.5  # share of the source's gain that a gain must reach
 _SECONDS: Final = "s"
 _COMPARED: Final = (*PERCENT, _SECONDS)
-"""Columns whose values do not depend on whose computer it was."""
+"""Columns whose values do not depend on the computer."""
 
 
 class ClaimStatus(StrEnum):
-    """How a claim fares."""
+    """Result of checking a claim."""
 
     HOLDS = "holds"
     WEAKER = "holds, but weaker"
     UNCLEAR = "undecided"
     FAILS = "does not hold"
-    BLIND = "finds too few people to tell"
+    BLIND = "too few people found to decide"
     UNKNOWN = "not measured"
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether a claim of the source holds for one of our trackers.
+    """Whether a claim of the source holds for a tracker.
 
     Attributes:
-        method: which tracker.
-        difference: of our values of the two groups.
-        outcome: how the claim fares.
-        tests: of errors of images, by name, in words.
-        times: the first value over the second, where the claim is about that; None elsewhere.
+        method: the tracker.
+        difference: difference between the values of the two groups.
+        outcome: result of the check.
+        tests: t-tests of image errors, by name, as text.
+        times: ratio of the first value to the second, for claims about a ratio; else None.
     """
 
     method: str
@@ -80,7 +80,7 @@ def _verdict(claim: Claim, method: str, one: Values, other: Values) -> Verdict:
         words = tuple(_in_words(name, *test) for name, test in tests.items())
         return Verdict(method, difference, _outcome(claim, difference, other.all.mean), words)
     assert not isinstance(one, ImageErrors)
-    assert not isinstance(other, ImageErrors)  # a column has values of one kind
+    assert not isinstance(other, ImageErrors)  # all values of a column are of one kind
     difference, second = paired(claim.metric, one, other), mean_of(other)
     if math.isnan(difference.by):
         outcome = ClaimStatus.UNKNOWN
@@ -100,7 +100,7 @@ def _in_words(name: str, effect: str, test: TTest) -> str:
 
 
 def _outcome(claim: Claim, ours: ResultDifference, second: float) -> ClaimStatus:
-    """Compare the interval of a difference with the claim; without an interval nothing is decided."""
+    """Compare the interval of a difference with the claim; undecided without an interval."""
     if not ours.is_sure:
         return ClaimStatus.UNCLEAR
     if claim.expect in ("alike", "no less"):
@@ -119,7 +119,7 @@ def _outcome(claim: Claim, ours: ResultDifference, second: float) -> ClaimStatus
 
 
 def _alike(ours: ResultDifference, within: float, *, either_way: bool) -> ClaimStatus:
-    """Check whether the interval is within a margin, on either side or below alone."""
+    """Check whether the interval is within a margin, on both sides or only below."""
     if ours.low >= -within and (ours.high <= within or not either_way):
         return ClaimStatus.HOLDS
     is_apart = ours.high < -within or (either_way and ours.low > within)
@@ -127,7 +127,7 @@ def _alike(ours: ResultDifference, within: float, *, either_way: bool) -> ClaimS
 
 
 class Standing(StrEnum):
-    """How a value of ours compares with the source's."""
+    """How a measured value compares with the source's."""
 
     BETTER = "better"
     ALIKE = "equal"
@@ -138,14 +138,14 @@ class Standing(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """A printed value, and ours.
+    """A printed value and a measured one.
 
     Attributes:
-        group, column: which of the table's.
-        method: whose ours is.
-        source, ours: the two.
-        difference: ours less the source's.
-        standing: what follows from its interval.
+        group, column: place in the table.
+        method: the tracker of the measured value.
+        source, ours: printed and measured value.
+        difference: measured less printed value.
+        standing: conclusion from its interval.
     """
 
     group: str
@@ -158,12 +158,12 @@ class Compared:
 
     @property
     def is_below(self) -> bool:
-        """Whether ours is the worse of the two, for sure or not."""
+        """Whether the measured value is worse, significantly or not."""
         return self.difference.by > 0 if self.column == _SECONDS else self.difference.by < 0
 
 
 def compare(samples: Samples, experiment: Experiment) -> Iterator[Compared]:
-    """Compare every printed value that does not depend on a computer with all of ours."""
+    """Compare every printed value that does not depend on the computer with the measured values."""
     for printed in experiment.values:
         for column, (source, deviation) in printed.values.items():
             if printed.method != SOURCE or column not in _COMPARED:
@@ -178,7 +178,7 @@ def compare(samples: Samples, experiment: Experiment) -> Iterator[Compared]:
 
 
 def _standing(column: str, away: ResultDifference, source: float) -> Standing:
-    """Compare the interval with the margin first: within it on both sides is alike."""
+    """Return the standing of an interval; it is alike if within the margin on both sides."""
     if math.isnan(away.by):
         return Standing.UNKNOWN
     within = margin(column, source)
@@ -192,9 +192,9 @@ def _standing(column: str, away: ResultDifference, source: float) -> Standing:
 
 
 def effects_to_source(samples: Samples, experiment: Experiment) -> Iterator[str]:
-    """Write for each of our lines Cohen's d to the source, and its 95 % interval for a split's images.
+    """Return for each measured line Cohen's d to the source, with its 95 % interval for a split's images.
 
-    Empty where the errors of images are not known, or the source prints no deviation.
+    The text is empty if image errors are unknown, or if the source prints no deviation.
     """
     printed = {line.group: line.values for line in experiment.values}
     for line, values in samples.items():

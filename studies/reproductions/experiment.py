@@ -1,4 +1,4 @@
-"""Tables and figures of a source: what is printed, how it is measured, and what the measurement gave."""
+"""Tables and figures of a source: printed values, how they are measured, and the results."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.units import Measurement, Unfinished
 
 SOURCE = "source"
-"""Whose the printed values are, unless the source has several computers or methods."""
+"""Method of the printed values, unless the source has several computers or methods."""
 
 Floats = NDArray[np.float64]
 
@@ -27,8 +27,8 @@ class Line:
     """One line of a table.
 
     Attributes:
-        group: what is varied, as in the source: a data set, a number of samples, a step.
-        method: whose values these are: a tracker, or a way to count.
+        group: the varied quantity, as in the source: a data set, a number of samples, a step.
+        method: the method of the values: a tracker, or a counting rule.
     """
 
     group: str
@@ -37,12 +37,12 @@ class Line:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Jackknife:
-    """A value of a single repeat, and what it would be without each of its sequences.
+    """A value of a single repeat, and its leave-one-out values.
 
     Attributes:
-        whole: of all sequences.
-        without: (F,) of all but one.
-        suites: names of the data sets that they are; values of the same sequences have the same.
+        whole: value of all sequences.
+        without: (F,) values without one of the sequences.
+        suites: names of the data sets; equal for values of the same sequences.
     """
 
     whole: float
@@ -51,7 +51,7 @@ class Jackknife:
 
     @property
     def by_sequence(self) -> Floats:
-        """Return the pseudo-values (F,), which stand for values of each sequence by itself.
+        """Return the jackknife pseudo-values (F,), one for each sequence.
 
         Source: Miller, "The jackknife - a review", Biometrika 61, 1974.
         """
@@ -60,27 +60,27 @@ class Jackknife:
 
 
 Values = Floats | Jackknife | ImageErrors
-"""Of one line and column: (R,) one value per repeat, that of a single one, or errors of images."""
+"""Values of a line and column: (R,) one per repeat, a single repeat's, or errors of images."""
 
 Samples = Mapping[Line, Mapping[str, Values]]
-"""Of each line, by the column's name."""
+"""Values of each line, by name of the column."""
 
 Row = Mapping[str, float]
 
 
 def as_columns(rows: Iterable[Row]) -> dict[str, Floats]:
-    """Turn rows, one per repeat, into columns (R,)."""
+    """Convert rows, one per repeat, to columns (R,)."""
     listed = list(rows)
     return {name: np.array([row[name] for row in listed], dtype=np.float64) for name in listed[0]}
 
 
 def ratio(part: float, whole: float) -> float:
-    """Return a share; NaN of nothing."""
+    """Return a ratio; NaN if the denominator is 0."""
     return float(part / whole) if whole else float("nan")
 
 
 def mean(values: Floats | Sequence[float]) -> float:
-    """Return the mean; NaN of nothing."""
+    """Return the mean; NaN without values."""
     return float(np.mean(values)) if len(values) else float("nan")
 
 
@@ -95,9 +95,9 @@ class PrintedLine(Strict):
     __pydantic_extra__: dict[str, Number | Annotated[tuple[Number, Number], Field(strict=False)]]
 
     group: str
-    """what is varied"""
+    """varied quantity"""
     method: str = SOURCE
-    """whose values, where the source has several, such as computers"""
+    """method, where the source has several, such as computers"""
 
     @property
     def values(self) -> dict[str, tuple[float, float | None]]:
@@ -109,26 +109,26 @@ class PrintedLine(Strict):
 
 
 class Claim(Strict):
-    """A sentence of the source that can be checked."""
+    """A claim of the source that can be checked."""
 
     says: str
-    """in our words"""
+    """the claim in plain words"""
     metric: str
-    """column that it is about"""
+    """column that it refers to"""
     groups: Annotated[tuple[str, str], Field(strict=False)]
-    """the first compared with the second"""
+    """the first group is compared with the second"""
     expect: Literal["more", "less", "alike", "no less", "differs"]
-    """what the first is, or that they differ either way"""
+    """expected relation of the first group to the second; "differs" for either direction"""
     by: Number | None = None
     """difference in points that the source gives"""
     times: Number | None = None
-    """how many times the second's value the source says that the first's is"""
+    """ratio of the first value to the second in the source"""
     tested: bool = False
-    """whether the source has a paired t-test"""
+    """whether the source reports a paired t-test"""
 
 
 class Experiment(Strict):
-    """A table or figure of a source beside what measures it again; `catalogue` reads them from files."""
+    """A table or figure of a source, and how it is measured; `catalogue` reads them from files."""
 
     id: str
     """such as "figure-4.8" or "paper-table-1\""""
@@ -136,17 +136,17 @@ class Experiment(Strict):
     source: str
     note: str = ""
     caption: str = ""
-    """what the source's figure shows, where it is a picture"""
+    """description of the source's figure, if it is a picture"""
     values: Annotated[tuple[PrintedLine, ...], Field(strict=False)] = ()
     claims: Annotated[tuple[Claim, ...], Field(strict=False)] = ()
     why: str = ""
-    """what differs from the source, and why"""
+    """differences from the source, and their reasons"""
     groups: Texts = ()
-    """what a full run varies, in the order of its lines; a quick run leaves some out"""
+    """varied values of a full run, in the order of its lines; a quick run omits some"""
     measure: Callable[[Measurement], Samples] | None = None
-    """gives the lines of the table; None for a figure without numbers"""
+    """measures the lines of the table; None for a figure without numbers"""
     draw: Callable[[Measurement], Figure | str | None] | None = None
-    """gives a picture of its own, or its address; otherwise the lines are plotted"""
+    """draws a picture, or its data URL; otherwise the lines are plotted"""
     chart: Literal["bars", "lines", "none"] = "none"
     """how the lines are plotted"""
     plotted: Texts = ()
@@ -169,11 +169,11 @@ class Experiment(Strict):
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """What an experiment took, with the runs that it shares with others.
+    """Effort of an experiment, including units of work that it shares with others.
 
     Attributes:
-        units: of work.
-        seconds: [s] of processor time for them.
+        units: number of units of work.
+        seconds: [s] processor time.
     """
 
     units: int
@@ -182,14 +182,14 @@ class Effort:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExperimentOutcome:
-    """What a finished experiment gave.
+    """Result of a finished experiment.
 
     Attributes:
-        experiment: which one.
+        experiment: the experiment.
         samples: its values.
-        picture: address of a picture of its own; None for none.
-        left_out: groups of a full run that this one lacks.
-        effort: what it took; None if that is not known.
+        picture: data URL of its own picture; None for none.
+        left_out: groups of a full run that are missing.
+        effort: its effort; None if unknown.
     """
 
     experiment: Experiment
@@ -200,7 +200,7 @@ class ExperimentOutcome:
 
     @property
     def repeats(self) -> int | None:
-        """How many values each mean is of: repeats, splits or turns; None where there are none."""
+        """Number of values of each mean: repeats, splits or turns; None without any."""
         sizes = [
             1 if isinstance(values, Jackknife) else values.size
             for values in self._values()
@@ -210,7 +210,7 @@ class ExperimentOutcome:
 
     @property
     def sequences(self) -> int | None:
-        """Over how many sequences the intervals are; None where they are over repeats."""
+        """Number of sequences of the intervals; None for intervals over repeats."""
         return max((len(one.without) for one in self._values() if isinstance(one, Jackknife)), default=None)
 
     def _values(self) -> Iterator[Values]:
@@ -218,7 +218,7 @@ class ExperimentOutcome:
 
     @classmethod
     def of(cls, experiment: Experiment, plan: Plan, store: Store) -> "ExperimentOutcome":
-        """Measure and draw an experiment from the results that there are.
+        """Measure and draw an experiment from the stored results.
 
         Raises:
             Unfinished: some of its units have not run.
@@ -234,7 +234,7 @@ class ExperimentOutcome:
 
     @classmethod
     def so_far(cls, experiment: Experiment, plan: Plan, store: Store) -> "ExperimentOutcome | None":
-        """Measure with as many repeats, up to the plan's, as all units have run for; None for none."""
+        """Measure with as many repeats as all units have completed, up to the plan's; None without any."""
         fewer: Sequence[int] = () if plan.is_quick else range(plan.repeats - 1, 0, -1)
         for one in (plan, *map(plan.repeated, fewer)):
             try:

@@ -1,4 +1,4 @@
-"""Errors of many images: summed up as the paper does, and by stretches of time."""
+"""Errors of many images: summarised as in the paper, and by blocks of time."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,11 +11,11 @@ Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 BLOCKS = 20
-"""Into how many stretches of time a film is cut where neighbouring images must not count as independent."""
+"""Number of blocks of time per clip, as errors of neighbouring images are not independent."""
 
 
 class ErrorSummary(NamedTuple):
-    """Absolute errors: number, mean and standard deviation in their unit; all 0 where there are none."""
+    """Absolute errors: number, mean and standard deviation in their unit; all 0 without errors."""
 
     images: int
     mean: float
@@ -30,7 +30,7 @@ class ErrorSummary(NamedTuple):
 
 
 def pooled(parts: Sequence[ErrorSummary]) -> ErrorSummary:
-    """Summarise the errors of all parts as if they lay in one heap."""
+    """Combine the summaries of all parts."""
     counts = np.array([one.images for one in parts], np.float64)
     if not counts.sum():
         return ErrorSummary.of(np.empty(0))
@@ -42,13 +42,13 @@ def pooled(parts: Sequence[ErrorSummary]) -> ErrorSummary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImageErrors:
-    """Errors of one way to measure.
+    """Errors of one method.
 
     Attributes:
-        splits: one a split, of the images that were tested with.
-        blocks: one a stretch of time of each film, over all its splits; in time's order, so that two ways
-            that were tested on the same films can be compared pair by pair.
-        films: how many.
+        splits: one summary per split, of its test images.
+        blocks: one summary per block of time of each clip, over all its splits; in time order, so that two
+            methods tested on the same clips can be compared pair by pair.
+        films: number of clips.
     """
 
     splits: tuple[ErrorSummary, ...]
@@ -57,25 +57,25 @@ class ImageErrors:
 
     @property
     def all(self) -> ErrorSummary:
-        """Of all splits together."""
+        """Summary of all splits."""
         return pooled(self.splits)
 
     @property
     def block_means(self) -> Floats:
-        """Mean error (B,) of each stretch; NaN where no image was tested."""
+        """Mean error (B,) of each block; NaN without test images."""
         return np.array([one.mean if one.images else np.nan for one in self.blocks])
 
     def only(self, choose: Callable[..., ErrorSummary]) -> "ImageErrors":
-        """Keep the split with the least or greatest mean error, by `min` or `max`."""
+        """Return only the split with the least or greatest mean error, by `min` or `max`."""
         return ImageErrors(splits=(choose(self.splits, key=lambda one: one.mean),))
 
     @classmethod
     def of(cls, tested: Sequence[tuple[Rows, Floats]], count: int) -> "ImageErrors":
-        """Sum up splits of one film.
+        """Summarise the splits of one clip.
 
         Args:
-            tested: of each split, numbers (N,) of the images, and their errors (N,).
-            count: images of the film.
+            tested: for each split, indices (N,) of the images, and their errors (N,).
+            count: number of images of the clip.
         """
         rows = np.concatenate([numbers for numbers, _ in tested])
         errors = np.concatenate([part for _, part in tested])
@@ -87,7 +87,7 @@ class ImageErrors:
 
     @classmethod
     def joined(cls, films: "Iterable[ImageErrors]") -> "ImageErrors":
-        """Put the errors of several films one after the other."""
+        """Concatenate the errors of several clips."""
         listed = list(films)
         return cls(
             splits=tuple(split for film in listed for split in film.splits),
@@ -97,17 +97,17 @@ class ImageErrors:
 
     @classmethod
     def merged(cls, parts: "Sequence[ImageErrors]") -> "ImageErrors":
-        """Take together what was tested on different images of the same splits."""
+        """Combine errors of different images of the same splits."""
         by_split = zip(*(part.splits for part in parts), strict=True)
         by_block = zip(*(part.blocks for part in parts), strict=True)
         return cls(splits=tuple(map(pooled, by_split)), blocks=tuple(map(pooled, by_block)))
 
     def plain(self) -> dict[str, Any]:
-        """Return them as plain data."""
+        """Return the errors as plain data."""
         return {"splits": self.splits, "blocks": self.blocks}
 
     @classmethod
     def of_plain(cls, plain: Mapping[str, Any]) -> "ImageErrors":
-        """Make a film's errors out of plain data, equal to the last digit."""
+        """Restore a clip's errors exactly from plain data."""
         splits, blocks = (tuple(ErrorSummary(*row) for row in plain[key]) for key in ("splits", "blocks"))
         return cls(splits=splits, blocks=blocks)

@@ -1,4 +1,4 @@
-"""How much is measured: everything, or a little in a few minutes."""
+"""Plan the extent of a run: everything, or a small part in a few minutes."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,7 +11,7 @@ from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
 
 DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
 TRAINING = "training films"
-"""Of the scenario of dataset1, with other seeds: by these the literal tracker's readings were chosen."""
+"""Clips of dataset1's scenario with other seeds, used to choose the readings of the literal tracker."""
 _TRAINING_SEEDS = (100, 101)
 SEQUENCES: Final[Mapping[str, str]] = {
     **{f"s1r{k}": f"bears_{k}" for k in range(1, 7)},
@@ -21,41 +21,41 @@ SEQUENCES: Final[Mapping[str, str]] = {
     **{f"s5r{k}": f"cans_{k}" for k in (1, 2)},
     "s6r1": "plants_1",
 }
-"""Scenarios that stand for the sequences of the thesis on situation awareness, chapter 3, by its names."""
+"""Scenarios that replace the sequences of the thesis on situation awareness, chapter 3, by its names."""
 PRESETS: Final = ("tof", "kinect", "kinect_rough")
-"""Depth cameras that record them."""
+"""Depth cameras of the sequences."""
 REPEATS = 10
-"""How often the sources repeat everything."""
+"""Number of repeats in the sources."""
 QUICK_S = 20.0
-"""How much a quick run sees of a data set's run [s]."""
+"""Length of a data set's run in a quick run [s]."""
 WHOLE_S = 3600.0
 """Longer than any drive [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Plan:
-    """How much of everything.
+    """Extent of a run.
 
     Attributes:
-        cache: where rendered frames are kept.
-        suites: runs by the name of their data set.
-        training: runs apart from those, by which readings were chosen.
+        cache: folder of rendered frames.
+        suites: runs by name of their data set.
+        training: separate runs, used to choose the readings.
         repeats: random streams per tracker.
         is_quick: whether sweeps take fewer values.
-        pair_seeds: seeds per scenario from which examples of overlapping people are taken.
-        splits: of examples into those to learn from and those to test with.
-        triplets: whether weighted triplets are tried, which take minutes.
-        rounds: of boosting.
-        timing_steps: how often each step is timed in each turn.
-        walks: seeds of each room in which people walk before a panoramic camera.
+        pair_seeds: seeds per scenario for samples of overlapping people.
+        splits: number of splits of samples into training and test.
+        triplets: whether weighted triplets are included, which take minutes.
+        rounds: rounds of boosting.
+        timing_steps: number of timings of each step in each turn.
+        walks: seeds of each room in which people walk around a panoramic camera.
         sets: numbers of the drives with a depth camera, from 1.
-        drives: seeds of each of them.
-        ablated: seeds of those on which trackers are compared that differ in one thing.
-        drive_s: [s] after which drives are cut.
-        scenes: names of the sequences in which objects are moved.
-        scene_seeds: seeds of each of them.
-        presets: depth cameras that watch them.
-        absences: seeds of each scenario in which a person goes away and comes back.
+        drives: seeds of each drive.
+        ablated: seeds of each drive for trackers that differ in one setting.
+        drive_s: [s] maximum length of drives.
+        scenes: names of the sequences with moved objects.
+        scene_seeds: seeds of each sequence.
+        presets: depth cameras of the sequences.
+        absences: seeds of each scenario in which a person leaves and comes back.
         follows: seeds of runs in which the robot follows such a person.
     """
 
@@ -85,7 +85,7 @@ class Plan:
         return [run for name in suites for run in (self.training if name == TRAINING else self.suites[name])]
 
     def repeated(self, repeats: int) -> "Plan":
-        """Return a full plan with as many repeats; what is smaller than the sources' ten stays as small."""
+        """Return a full plan with a number of repeats; counts below the sources' ten stay as they are."""
         return replace(
             self,
             repeats=repeats,
@@ -100,13 +100,13 @@ class Plan:
 
 
 def full_plan(cache: Path, repeats: int = REPEATS) -> Plan:
-    """Plan everything, as the sources did it, with as many repeats, or seeds where those are repeated."""
+    """Return the plan of a full run, with the sources' number of repeats or seeds."""
     suites = {name: tuple(runs_of(load_suite(name))) for name in DATASETS}
     return Plan(cache=cache, suites=suites, training=_training(suites)).repeated(repeats)
 
 
 def quick_plan(cache: Path) -> Plan:
-    """Plan a little of everything: the start of one run per data set, three repeats, fewer values."""
+    """Return the plan of a quick run: the start of one run per data set, three repeats, fewer values."""
     suites = {name: (_middle_run(name),) for name in DATASETS}
     return Plan(
         cache=cache,
@@ -133,7 +133,7 @@ def quick_plan(cache: Path) -> Plan:
 
 
 def shortened(name: str, most_s: float) -> Scenario:
-    """Load a scenario of the library, and cut it where it would be longer [s]."""
+    """Load a scenario of the library, with a maximum duration [s]."""
     scenario = load_scenario(name)
     return scenario.lasting(min(scenario.duration_s, most_s))
 

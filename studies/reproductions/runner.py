@@ -1,4 +1,4 @@
-"""Measure the tables and figures of the sources again, print them, and write the page."""
+"""Reproduce the tables and figures of the sources, print them, and write the page."""
 
 import json
 import math
@@ -31,18 +31,18 @@ from peopleboy.studies.reproductions.units import Unfinished, Unit, open_store, 
 PAGE: Final = "index.html"
 RESULTS: Final = "units.jsonl"
 MEANS: Final = "figures.json"
-_FILE_WIDTH: Final = 160  # characters of what is printed into a file
+_FILE_WIDTH: Final = 160  # width of printed tables in a file, in characters
 _RATE_HZ: Final = 15.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Means:
-    """With what the work is done.
+    """Resources of a reproduction.
 
     Attributes:
         out: folder of the page and the results.
-        workers: who does it.
-        command: by which the user began it.
+        workers: workers that execute the units.
+        command: command of the user.
     """
 
     out: Path
@@ -53,23 +53,23 @@ class Means:
 def reproduce(
     experiments: Sequence[Experiment], plan: Plan, means: Means, *, so_far: bool = False
 ) -> tuple[Path, list[Section]]:
-    """Run what is missing, and write the page, and the means of all values beside it.
+    """Run missing units, and write the page, and the means of all values to the same folder.
 
-    A killed run resumes with the same folder: results that are there are taken from there. Experiments that
-    cannot be finished, since units failed, are left off the page.
+    A killed run resumes with the same folder and reuses its results. Experiments that cannot be finished,
+    since units failed, are omitted from the page.
 
     Args:
-        experiments: what is reproduced.
-        plan: how much of everything.
-        means: with what.
-        so_far: run nothing, and show what the folder has, each part with as many repeats as it has.
+        experiments: the experiments to reproduce.
+        plan: extent of the run.
+        means: resources of the run.
+        so_far: run nothing, and show the results in the folder, each part with its number of repeats.
 
     Returns:
-        The page, and what is on it.
+        The page, and its sections.
 
     Raises:
-        BadInput: the folder or the cluster cannot be used, or nothing is finished there.
-        TasksFailed: some units failed, after all else was done.
+        BadInput: the folder or the cluster cannot be used, or no experiment is finished.
+        TasksFailed: some units failed, after all others were completed.
     """
     store = open_store(means.out / RESULTS)
     known, failures = ({}, []) if so_far else work_off(experiments, plan, store, means.workers)
@@ -86,9 +86,9 @@ def reproduce(
 def work_off(
     experiments: Sequence[Experiment], plan: Plan, store: Store, workers: Workers
 ) -> tuple[dict[str, ExperimentOutcome], list[Failure]]:
-    """Run what is missing, and what that makes possible, until all experiments are finished or lack a unit.
+    """Run missing units, stage by stage, until all experiments are finished or blocked by a failed unit.
 
-    A unit that several experiments need runs once; one that fails stops no experiment that does without it.
+    A unit that several experiments need runs once; a failed unit blocks only experiments that need it.
 
     Raises:
         BadInput: the cluster cannot be used.
@@ -117,10 +117,10 @@ def finished(
     store: Store,
     known: Mapping[str, ExperimentOutcome] | None = None,
 ) -> tuple[list[ExperimentOutcome], list[str]]:
-    """Return what is finished, each part with as many repeats as it has, and the ids of what is not.
+    """Return finished experiments, each with its number of repeats, and the ids of unfinished ones.
 
     Raises:
-        BadInput: nothing is finished.
+        BadInput: no experiment is finished.
     """
     found = {
         one.id: (known or {}).get(one.id) or ExperimentOutcome.so_far(one, plan, store) for one in experiments
@@ -145,7 +145,7 @@ def _mean_values(outcomes: Sequence[ExperimentOutcome]) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReproduceOptions:
-    """What is reproduced, and how often.
+    """Options of a reproduction.
 
     Attributes:
         films: folder of rendered frames.
@@ -203,9 +203,9 @@ def reproduce_named(
     """Reproduce the results of these names, or all, and return the page and its sections.
 
     Args:
-        names: ids or numbers; all there are if left out.
-        options: how.
-        workers: who does the work.
+        names: ids or numbers; all if omitted.
+        options: options of the reproduction.
+        workers: workers that execute the units.
 
     Raises:
         BadInput: an unknown name, or a folder or cluster that cannot be used.
@@ -232,12 +232,12 @@ def print_experiments(experiments: Sequence[Experiment]) -> None:
 def rich_table(
     head: Sequence[str], rows: Iterable[Sequence[str]], *, left: int | None = None, **style: Any
 ) -> Table:
-    """Lay out a table without lines.
+    """Return a table without lines.
 
     Args:
         head: names of the columns.
         rows: their cells.
-        left: how many columns are words, on the left, before those that are numbers; None for all.
+        left: number of leading columns with text, before those with numbers; None for all.
         style: of the table.
     """
     table = Table(box=None, header_style="bold", **({"pad_edge": False} | style))
@@ -249,7 +249,7 @@ def rich_table(
 
 
 def print_sections(sections: Iterable[Section]) -> None:
-    """Print every section: its table, and how the source's claims fare."""
+    """Print every section: its table, and the results of the source's claims."""
     console = Console(width=None if sys.stdout.isatty() else _FILE_WIDTH, highlight=False)
     for part in sections:
         console.print(
@@ -262,14 +262,14 @@ def print_sections(sections: Iterable[Section]) -> None:
                 line.style = "dim" if row.is_source else ""
             console.print(table)
         if part.compared:
-            head = ("", "", "", "ours less the source's (95 %), effect size", "")
+            head = ("", "", "", "measured less source (95 %), effect size", "")
             console.print(rich_table(head, map(_compared, part.compared)))
         if part.picture is not None:
-            console.print("  a picture is on the page")
+            console.print("  the page has a picture")
         for item in part.checked:
             _print_claim(console, item)
         if part.outcome.left_out:
-            console.print(f"  left out of this run: {escape(', '.join(part.outcome.left_out))}")
+            console.print(f"  omitted from this run: {escape(', '.join(part.outcome.left_out))}")
         console.print()
 
 
@@ -289,17 +289,17 @@ def _print_claim(console: Console, item: Checked) -> None:
 
 
 def count_suite(name: str, films: Path) -> Content:
-    """Count what a suite holds; frames that are not in the folder yet are rendered."""
+    """Count the content of a suite; missing frames are rendered to the folder."""
     return add_up(count(shot.people(), shot.frames, _RATE_HZ) for shot in films_of(name, films))
 
 
 def contents_of(names: Sequence[str], films: Path) -> dict[str, Content]:
-    """Count what data sets contain, by name."""
+    """Count the contents of data sets, by name."""
     return {name: count_suite(name, films) for name in names}
 
 
 def contents_to_json(ours: Mapping[str, Content]) -> dict[str, Any]:
-    """Return the contents of the rendered data sets, each with that of the published one."""
+    """Return the contents of rendered data sets, each with the published contents."""
     return {name: {"rendered": asdict(one), "published": asdict(THESIS[name])} for name, one in ours.items()}
 
 
@@ -315,6 +315,6 @@ def print_contents(ours: Mapping[str, Content]) -> None:
         )
         for one in fields(Content)
     ]
-    title = {"title": "thesis, table 3.1: ours (theirs)", "title_justify": "left"}
+    title = {"title": "thesis, table 3.1: rendered (published)", "title_justify": "left"}
     table = rich_table(("", *ours), rows, left=1, **title)
     (Console() if sys.stdout.isatty() else Console(width=120)).print(table)

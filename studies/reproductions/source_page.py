@@ -1,4 +1,4 @@
-"""The page: every table and figure of the sources beside ours, in one file that needs nothing else."""
+"""Write the page: printed and measured tables and figures of the sources, as one self-contained file."""
 
 import math
 import os
@@ -44,12 +44,12 @@ MAIN: Final = {
 }
 MAIN_ROWS: Final = ("default", "default, strict")
 THREE_DECIMALS: Final = ("m", "|r|", "rate", "FP per image", "recall", "figure", "from", "to")
-"""Columns that need so many, beside those that end in [m]."""
+"""Columns with three decimals, besides those that end in [m]."""
 COUNTS: Final = (
     *("images", "TP", "FN", "FP", "people", "others"),
     *("parameters", "pairs", "weak classifiers"),
 )
-"""Columns that need no decimals."""
+"""Columns without decimals."""
 EFFECT: Final = "d to the source (95 %)"
 
 Cells = Mapping[str, tuple[float, float | None]]
@@ -57,7 +57,7 @@ Cells = Mapping[str, tuple[float, float | None]]
 
 @dataclass(frozen=True, slots=True)
 class PageRow:
-    """One line of a table on the page: a group, a method, and the cells as text."""
+    """One line of a table on the page: group, method, and cells as text."""
 
     group: str
     method: str
@@ -68,7 +68,7 @@ class PageRow:
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """A claim of the source, and how it fares by method."""
+    """A claim of the source, and its results by method."""
 
     claim: Claim
     verdicts: tuple[Verdict, ...]
@@ -87,35 +87,35 @@ class Section:
 
     @property
     def id(self) -> str:
-        """The experiment's id."""
+        """Id of the experiment."""
         return self.outcome.experiment.id
 
     @property
     def table(self) -> Experiment:
-        """What is printed."""
+        """The experiment."""
         return self.outcome.experiment
 
     def summary(self, main: str) -> str:
-        """Count in a few words how the source's claims fare with a main tracker."""
+        """Summarise the results of the source's claims for a main tracker."""
         verdicts = (verdict for item in self.checked for verdict in item.verdicts)
         count = Counter(verdict.outcome for verdict in verdicts if verdict.method in MAIN[main])
         return ", ".join(f"{outcome.value}: {count[outcome]}" for outcome in ClaimStatus if count[outcome])
 
     def standings(self, main: str) -> str:
-        """Count in a few words how a main tracker's values compare with the printed ones."""
+        """Summarise how a main tracker's values compare with the printed ones."""
         count = Counter(one.standing for one in self.compared if one.method in MAIN[main])
         return ", ".join(f"{standing.value}: {count[standing]}" for standing in Standing if count[standing])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PageHead:
-    """What the page says of the run.
+    """Information on the run for the page.
 
     Attributes:
-        command: by which it can be repeated.
-        is_quick: whether only a little was done.
-        amount: what was done, in words.
-        facts: further lines: versions, machine, time; by a part's id, what holds for it alone.
+        command: command that repeats it.
+        is_quick: whether it was a quick run.
+        amount: extent of the run, as text.
+        facts: further lines: versions, machine, time; with the id of a part as key, facts of that part.
     """
 
     command: str
@@ -125,7 +125,7 @@ class PageHead:
 
     @property
     def lines(self) -> list[tuple[str, str]]:
-        """Return the facts as they are listed: parts with the same fact share a line."""
+        """Return the facts as lines; parts with the same fact share a line."""
         alike: dict[str, list[str]] = {}
         for name in EXPERIMENTS:
             if name in self.facts:
@@ -156,7 +156,7 @@ def rendered(template: str, **values: Any) -> str:
 
 
 def section(outcome: ExperimentOutcome) -> Section:
-    """Lay out one table or figure."""
+    """Return the section of one table or figure."""
     experiment, samples = outcome.experiment, outcome.samples
     columns = tuple(dict.fromkeys(name for values in samples.values() for name in values))
     effects = tuple(effects_to_source(samples, experiment))
@@ -173,7 +173,7 @@ def section(outcome: ExperimentOutcome) -> Section:
 def below_source(sections: Iterable[Section]) -> Iterator[tuple[str, Compared]]:
     """Yield every printed value that the default does not reach, strictly or not, by the part's id.
 
-    Values that several parts have are given once.
+    Values that appear in several parts are yielded once.
     """
     seen = set()
     for part in sections:
@@ -187,7 +187,7 @@ def below_source(sections: Iterable[Section]) -> Iterator[tuple[str, Compared]]:
 def _rows(
     experiment: Experiment, samples: Samples, columns: Sequence[str], effects: Sequence[str]
 ) -> Iterator[PageRow]:
-    """Put the source's lines before ours, group by group; effects, if any is known, are the last cells."""
+    """Return printed and measured lines, group by group; effect sizes, if known, are the last cells."""
     lines: dict[str, list[tuple[str, Cells, bool, str]]] = {}
     for printed in experiment.values:
         lines.setdefault(printed.group, []).append((printed.method, printed.values, True, ""))
@@ -204,7 +204,7 @@ def _rows(
 
 
 def in_order(groups: Iterable[str]) -> list[str]:
-    """Sort groups that are numbers; leave others as they come."""
+    """Sort numeric groups; keep the order of others."""
     listed = list(groups)
     try:
         return sorted(listed, key=lambda group: float(group.removesuffix(" %")))
@@ -213,12 +213,12 @@ def in_order(groups: Iterable[str]) -> list[str]:
 
 
 def points(value: float, column: str) -> str:
-    """Write a difference: millimetres of metres, two decimals of all else."""
+    """Format a difference: metres to the millimetre, two decimals otherwise."""
     return "-" if math.isnan(value) else f"{value:+.{_digits(column)}f}"
 
 
 def span(difference: ResultDifference, column: str) -> str:
-    """Write a difference with its 95 % interval and effect size, as far as they are known."""
+    """Format a difference with its 95 % interval and effect size, as far as they are known."""
     text = points(difference.by, column)
     if difference.is_sure:
         text += f" ({points(difference.low, column)} to {points(difference.high, column)})"
@@ -232,7 +232,7 @@ def _digits(column: str) -> int:
 
 
 def _writer(lines: Sequence[Cells]) -> Callable[[str, tuple[float, float | None] | None], str]:
-    """Choose how a table's values are written: counts, times of less than 1 ms, or two or three decimals."""
+    """Format a table's values: counts, times below 1 ms, or two or three decimals."""
     known = [mean for cells in lines for mean, _ in cells.values() if not math.isnan(mean)]
     are_counts = all(mean == round(mean) for mean in known)
 
@@ -252,14 +252,14 @@ def _writer(lines: Sequence[Cells]) -> Callable[[str, tuple[float, float | None]
 def head_of(
     plan: Plan, outcomes: Sequence[ExperimentOutcome], store: Store, *, command: str, missing: Sequence[str]
 ) -> PageHead:
-    """Describe a run: how much was done, with what, and how long it took.
+    """Describe a run: its extent, versions, machine and time.
 
     Args:
-        plan: how much was wanted.
-        outcomes: what is finished.
-        store: with all results.
-        command: by which the user began it.
-        missing: ids of what is not finished.
+        plan: extent of the run.
+        outcomes: finished experiments.
+        store: store of all results.
+        command: command of the user.
+        missing: ids of unfinished experiments.
     """
     papers = {paper_of(one.experiment.id) for one in outcomes}
     scored = [one for one in outcomes if any(set(METRICS) & set(values) for values in one.samples.values())]
@@ -270,7 +270,7 @@ def head_of(
         "Python": platform.python_version(),
         "Seeds": _seeds(plan, papers, max(repeats)),
         "Machine": f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}",
-        "Time": f"{spent / 3600:.2f} core-hours for all results, those of earlier calls included",
+        "Time": f"{spent / 3600:.2f} core-hours for all results, including earlier calls",
         "Results": f"{len(store)} units of work in {store.path.name}",
     }
     if missing:
@@ -291,9 +291,9 @@ def _seeds(plan: Plan, papers: Set[str], repeats: int) -> str:
 
 
 def _amount(plan: Plan, papers: Set[str], repeats: Set[int]) -> str:
-    """Write how much was done."""
+    """Describe the extent of a run."""
     if plan.is_quick:
-        # How much of the data sets a quick run sees.
+        # Share of the data sets in a quick run.
         every = full_plan(plan.cache)
         seen, there = (sum(run.scenario.duration_s for run in one.runs(one.suites)) for one in (plan, every))
         kind, share = "quick", f"{seen:.0f} of {there:.0f} s"

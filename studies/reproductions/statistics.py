@@ -1,4 +1,4 @@
-"""Statistics of results: differences with 95 % intervals and effect sizes, t-tests, the bootstrap."""
+"""Statistics of results: differences with 95 % intervals and effect sizes, t-tests, bootstrap."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -21,26 +21,26 @@ PAPER: Final = ("OC", "DC", "OCR", "OCP", "OCA", "OAR", "BAP", "ADC")
 SHARE: Final = "right [%]"
 PERCENT: Final = (*THESIS, *PAPER, SHARE)
 """Columns of rates, in percent."""
-POINTS: Final = 2.0  # by which two rates may differ that are called alike
-PART: Final = 0.1  # of the second value, by which all others may
-SOURCE_REPEATS: Final = 10  # over which the sources' deviations are (thesis, sections 4.4 and 7.4)
+POINTS: Final = 2.0  # margin for rates that are called alike
+PART: Final = 0.1  # margin for all other values, as a share of the second value
+SOURCE_REPEATS: Final = 10  # number of repeats of the sources' deviations (thesis, sections 4.4 and 7.4)
 
 TRAINING_SHARE: Final = 0.6
-"""Share of the examples of people who overlap that are learned from (thesis, section 7.4)."""
+"""Training share of the samples of overlapping people (thesis, section 7.4)."""
 _DRAWS: Final = 2000
 _RETESTED: Final[Mapping[str, float]] = {SHARE: (1.0 - TRAINING_SHARE) / TRAINING_SHARE}
-"""Of columns whose repeats are splits of the same examples: those tested with, per one learned from."""
-_SURE: Final = float(norm.ppf(0.975))  # deviations that hold 95 %
+"""Ratio of test to training samples, for columns whose repeats are splits of the same samples."""
+_SURE: Final = float(norm.ppf(0.975))  # half width of a 95 % interval in standard deviations
 
 
 @dataclass(frozen=True, slots=True)
 class ResultDifference:
-    """One value less another.
+    """Difference between two values.
 
     Attributes:
         by: the difference of the means.
-        low, high: its 95 % interval; NaN where there is a single repeat, or none.
-        effect: its size without a unit, in words; empty where that is unknown.
+        low, high: its 95 % interval; NaN for a single repeat, or none.
+        effect: its effect size, as text; empty if unknown.
     """
 
     by: float
@@ -50,7 +50,7 @@ class ResultDifference:
 
     @property
     def is_sure(self) -> bool:
-        """Whether there is an interval at all."""
+        """Whether the interval is known."""
         return not math.isnan(self.low + self.high)
 
 
@@ -65,7 +65,7 @@ def mean_of(values: Floats | Jackknife) -> float:
 
 
 def mean_and_spread(values: Values) -> tuple[float, float | None]:
-    """Return mean and standard deviation, over the repeats or of the images; None for a single repeat."""
+    """Return mean and standard deviation, over repeats or images; the deviation is None for one repeat."""
     if isinstance(values, ImageErrors):
         return values.all.mean, values.all.deviation
     if isinstance(values, Jackknife) or values.size < 2:
@@ -74,15 +74,15 @@ def mean_and_spread(values: Values) -> tuple[float, float | None]:
 
 
 def paired(column: str, one: Floats | Jackknife, other: Floats | Jackknife) -> ResultDifference:
-    """Compare values (R,) of the same repeats by Student's interval, or those of a single one by sequences.
+    """Compare values (R,) of the same repeats by Student's interval, or of a single repeat by sequences.
 
-    Splits of one set of examples share most of it; the interval is that of Nadeau and Bengio, "Inference for
-    the generalization error", Machine Learning 52, 2003, which is wider for that.
+    Splits of one set of samples overlap; for them the interval is the wider one of Nadeau and Bengio,
+    "Inference for the generalization error", Machine Learning 52, 2003.
     """
     means = mean_of(one), mean_of(other)
     if isinstance(one, Jackknife) and isinstance(other, Jackknife):
         parts = [one.by_sequence, other.by_sequence]
-        # The same sequences are compared one by one, others as two samples.
+        # Equal sequences are compared pair by pair, others as two samples.
         apart = [parts[0] - parts[1]] if one.suites == other.suites else parts
         return _difference(column, *means, map(_variance_of_mean, apart))
     if isinstance(one, Jackknife) or isinstance(other, Jackknife) or one.size != other.size or one.size < 2:
@@ -93,7 +93,7 @@ def paired(column: str, one: Floats | Jackknife, other: Floats | Jackknife) -> R
 def to_source(
     column: str, ours: Floats | Jackknife, source: float, deviation: float | None
 ) -> ResultDifference:
-    """Compare values (R,) with a printed one; its deviation, if there is one, is that of ten repeats."""
+    """Compare values (R,) with a printed one, whose deviation, if printed, is that of ten repeats."""
     if isinstance(ours, Jackknife):
         return _difference(column, ours.whole, source, [_variance_of_mean(ours.by_sequence)])
     if ours.size < 2:
@@ -113,7 +113,7 @@ def _difference(
     samples: tuple[Floats, ...] = (),
     deviation: float | None = None,
 ) -> ResultDifference:
-    """Return a difference of means with its effect size, and with its interval where variances are known."""
+    """Return a difference of means with its effect size, and its interval if variances are known."""
     by, effect, parts = one - other, _effect(column, one, other, samples, deviation), list(variances)
     if not parts:
         return ResultDifference(by, effect=effect)
@@ -122,7 +122,7 @@ def _difference(
 
 
 def by_stretches(one: ImageErrors, other: ImageErrors) -> ResultDifference:
-    """Compare mean errors of images; the interval is over the stretches of time that both were tested on."""
+    """Compare mean errors of images; the interval is over the blocks of time that both were tested on."""
     away = one.block_means - other.block_means
     away = away[np.isfinite(away)]
     by = one.all.mean - other.all.mean
@@ -135,7 +135,7 @@ def by_stretches(one: ImageErrors, other: ImageErrors) -> ResultDifference:
 def bootstrap_interval(parts: Sequence[T], value: Callable[[Sequence[T]], float]) -> Interval:
     """Return the 95 % interval of a value of parts, such as seeds, by the percentile bootstrap.
 
-    Resamples of which the value is NaN are left out. NaN for a single part.
+    Resamples with the value NaN are omitted. The interval of a single part is NaN.
 
     Source: B. Efron, "Bootstrap methods: another look at the jackknife", Annals of Statistics 7, 1979.
     """
@@ -165,7 +165,7 @@ def cohens_h(one: float, other: float) -> float:
 def hedges_g(by: float, deviations: tuple[float, ...], count: int) -> float:
     """Return a difference in pooled deviations, corrected for few values; NaN without any deviation.
 
-    So it is with a single degree of freedom, for which the correction is nought.
+    It is also NaN for a single degree of freedom, for which the correction is 0.
 
     Source: Hedges, "Distribution theory for Glass's estimator of effect size", J. Educ. Stat. 6, 1981.
     """
@@ -179,7 +179,7 @@ def hedges_g(by: float, deviations: tuple[float, ...], count: int) -> float:
 def _effect(
     column: str, one: float, other: float, samples: tuple[Floats, ...], deviation: float | None
 ) -> str:
-    """Write Cohen's h of rates, and Hedges' g of all else."""
+    """Format the effect size: Cohen's h for rates, Hedges' g otherwise."""
     if math.isnan(one + other):
         return ""
     if column in PERCENT:
@@ -213,9 +213,9 @@ class TTest:
     """A t-test.
 
     Attributes:
-        t, p: its statistic, positive where the first errs more, and its two-sided p-value.
-        count: of values on each side.
-        effect: of Cohen, d or d_z.
+        t, p: its statistic, positive if the first has larger errors, and its two-sided p-value.
+        count: number of values on each side.
+        effect: Cohen's d or d_z.
         interval: 95 % confidence interval of the effect.
     """
 
@@ -227,7 +227,7 @@ class TTest:
 
 
 def paired_by_blocks(one: ImageErrors, other: ImageErrors) -> TTest | None:
-    """Compare the mean errors of the same stretches of time; None with fewer than two of them.
+    """Compare the mean errors of the same blocks of time; None with fewer than two of them.
 
     The effect is d_z, the mean difference in standard deviations of the differences.
     """
@@ -246,10 +246,10 @@ def paired_by_blocks(one: ImageErrors, other: ImageErrors) -> TTest | None:
 
 
 def unpaired(one: ImageErrors, other: ImageErrors) -> TTest:
-    """Compare the errors of all splits of one run as if all were independent, which they are not.
+    """Compare the errors of all splits of one run as if they were independent, which they are not.
 
-    Means and deviations are those of all runs, the number of images is that of one of them: the 2003 paper
-    has one run, and only its ten splits together give the significance that it reports. The effect is d.
+    Means and deviations are those of all runs, the number of images is that of one run: the 2003 paper has
+    one run, and only its ten splits combined give the significance that it reports. The effect is d.
 
     Source: OMNIVIS 2003, section 6, which names Student's test for unpaired samples.
     """
@@ -264,7 +264,7 @@ def unpaired(one: ImageErrors, other: ImageErrors) -> TTest:
 
 
 def cohens_d(one: ErrorSummary, other: ErrorSummary, count: int) -> tuple[float, Interval]:
-    """Return two means' difference in pooled deviations, and its 95 % interval with so many on each side."""
+    """Return a difference of means in pooled deviations, and its 95 % interval for equal sample sizes."""
     spread = math.sqrt((one.deviation**2 + other.deviation**2) / 2.0)
     if spread == 0.0:
         return math.nan, (math.nan, math.nan)
@@ -274,5 +274,5 @@ def cohens_d(one: ErrorSummary, other: ErrorSummary, count: int) -> tuple[float,
 
 
 def spread_of_effect(d_z: float, count: int) -> float:
-    """Return half the 95 % interval of an effect d_z of so many pairs, as it is for large samples."""
+    """Return half the 95 % interval of an effect d_z, in the approximation for large samples."""
     return _SURE * math.sqrt(1.0 / count + d_z**2 / (2.0 * count))

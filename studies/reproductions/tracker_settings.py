@@ -1,4 +1,4 @@
-"""Trackers that are compared: one of a few bases, with some of its settings changed."""
+"""Settings of the compared trackers: a base, with some of its settings changed."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
@@ -34,15 +34,15 @@ BASES: Mapping[str, TrackerConfig] = {
     "contour": CONTOUR,
     "contour-thermal": replace(_OPEN, colour=None, appearance=None),
     "contour-colour": _OPEN,
-    # The contour tracker with the thesis's colour model, whose descriptions can be exchanged.
+    # The contour tracker with the thesis's colour model, which has several colour descriptors.
     "contour-moments": replace(_OPEN, colour=THESIS_COLOUR.colour, appearance=None),
 }
-"""Every tracker that the sources report on, and the contour tracker with as much as each of them."""
+"""Every tracker of the sources, and the contour tracker with the corresponding components."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrackerSetting:
-    """A base, and settings of it that are changed.
+    """A base and changes of its settings.
 
     Attributes:
         base: one of `BASES`.
@@ -75,17 +75,17 @@ class TrackerSetting:
         return attrgetter(path)(self.config())
 
     def make(self, rng: np.random.Generator) -> ContourTracker:
-        """Make the tracker."""
+        """Create the tracker."""
         return ContourTracker(self.config(), rng)
 
 
 def changes_of(values: Mapping[str, Any]) -> Changes:
-    """Return settings with their values; a list is a tuple there."""
+    """Return settings with their values; lists become tuples."""
     return tuple((path, tuple(one) if isinstance(one, list) else one) for path, one in values.items())
 
 
 def changed(record: Any, path: str, value: Value) -> Any:
-    """Copy nested records with the setting at a path, such as "person.count", changed.
+    """Return nested records with the setting at a path, such as "person.count", changed.
 
     Raises:
         BadInput: the setting is unknown.

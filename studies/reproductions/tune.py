@@ -1,4 +1,4 @@
-"""Evaluate other values of the thesis's parameters on the same clips; leave a curve of each and a page."""
+"""Evaluate other values of the thesis's parameters on the same clips; write a curve of each and a page."""
 
 import json
 import sys
@@ -43,12 +43,12 @@ class Parameter:
     """One of the parameters that the thesis optimised.
 
     Attributes:
-        name: on the command line.
-        says: what it is.
-        section: of the thesis that gives its value.
+        name: name on the command line.
+        says: description.
+        section: section of the thesis with its value.
         base: the tracker of that chapter, one of `BASES`.
-        printed: the value there.
-        values: what to change in the tracker for each value; nothing for the printed one.
+        printed: the value in the thesis.
+        values: changes of the tracker for each value; none for the printed one.
     """
 
     name: str
@@ -60,7 +60,7 @@ class Parameter:
 
     @property
     def scenario(self) -> str:
-        """That of the chapter's data set with a standing robot, here with other seeds."""
+        """Scenario of the chapter's data set with a standing robot, used with other seeds."""
         return "passers_by" if self.base == "thesis-single" else "hall_visits"
 
     def setting(self, value: str) -> TrackerSetting:
@@ -69,7 +69,7 @@ class Parameter:
 
 
 def _parameter(name: str, declared: dict[str, Any]) -> Parameter:
-    """Read a declaration; what it `scales` may have another unit here, and stays as it is if printed."""
+    """Read a declaration; settings in `scales` change in proportion, not for the printed value."""
     scales, others, printed = (declared.pop(key, ()) for key in ("scales", "others", "printed"))
     if scales:
         own = {path: TrackerSetting(declared["base"]).value(path) for path in scales}
@@ -85,11 +85,11 @@ def _parameter(name: str, declared: dict[str, Any]) -> Parameter:
 PARAMETERS: Final[Mapping[str, Parameter]] = {
     name: _parameter(name, declared) for name, declared in read_yaml(HERE / "tuned_parameters.yaml").items()
 }
-"""By name, in the thesis's order."""
+"""Parameters by name, in the thesis's order."""
 
 
 def chosen_parameters(names: Sequence[str]) -> list[Parameter]:
-    """Find parameters by name; all there are if none is named.
+    """Find parameters by name; all if none is named.
 
     Raises:
         BadInput: a parameter is unknown.
@@ -102,11 +102,11 @@ def chosen_parameters(names: Sequence[str]) -> list[Parameter]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrainingFilms:
-    """The clips that the trackers see.
+    """The clips of the evaluation.
 
     Attributes:
-        cache: where rendered frames are kept.
-        seeds: of the clips of each scenario.
+        cache: folder of rendered frames.
+        seeds: seeds of the clips of each scenario.
     """
 
     cache: Path
@@ -114,13 +114,13 @@ class TrainingFilms:
     seconds: Annotated[float, Field(ge=5.0, description="Maximum duration of a clip, in seconds.")] = 45.0
 
     def plays(self, scenario: str) -> list[SuiteRun]:
-        """List the clips of a scenario."""
+        """Return the clips of a scenario."""
         whole = load_scenario(scenario)
         cut = whole.lasting(min(self.seconds, whole.duration_s))
         return [SuiteRun(cut, seed) for seed in self.seeds]
 
     def units(self, parameter: Parameter, value: str) -> list[Unit]:
-        """List the work of one value: every clip once, each with its own random stream."""
+        """Return the units of one value: every clip once, each with its own random stream."""
         plays, setting = self.plays(parameter.scenario), parameter.setting(value)
         return [sequence_unit(play, self.cache, setting, number) for number, play in enumerate(plays)]
 
@@ -130,8 +130,8 @@ class Tuned:
     """The curve of one parameter.
 
     Attributes:
-        parameter: which one.
-        accuracy: area accuracy [%] (R,) of each value, clip by clip.
+        parameter: the parameter.
+        accuracy: area accuracy [%] (R,) of each value, one per clip.
     """
 
     parameter: Parameter
@@ -139,28 +139,28 @@ class Tuned:
 
     @property
     def best(self) -> str:
-        """The value with the highest mean; of equal ones the printed one, then the first."""
+        """The value with the highest mean; among equal ones the printed one, then the first."""
         printed = self.parameter.printed
         return max(self.accuracy, key=lambda value: (self.accuracy[value].mean(), value == printed))
 
     @property
     def gain(self) -> ResultDifference:
-        """By how much the best value is ahead of the printed one."""
+        """Difference between the best value and the printed one."""
         return paired(CRITERION, self.accuracy[self.best], self.accuracy[self.parameter.printed])
 
     @property
     def verdict(self) -> str:
-        """Say in a few words what follows."""
+        """Return the conclusion in a few words."""
         if self.best == self.parameter.printed:
-            return "no other does better"
+            return "no other value is better"
         gain = self.gain
         if gain.is_sure and gain.low > 0:
             return f"{self.best} is better"
         is_flat = gain.is_sure and gain.high <= margin(CRITERION, 0.0)
-        return "it matters little" if is_flat else "undecided"
+        return "little effect" if is_flat else "undecided"
 
     def plain(self) -> dict[str, Any]:
-        """Return all of it as plain data; without an interval, its ends are None."""
+        """Return the curve as plain data; unknown bounds are None."""
         gain, printed = self.gain, self.parameter.printed
         return {
             "printed": float(printed),
@@ -178,16 +178,16 @@ class Tuned:
 def tune(
     parameters: Sequence[Parameter], films: TrainingFilms, out: Path, workers: Workers
 ) -> tuple[Path, list[Tuned]]:
-    """Evaluate every value of the parameters, one parameter at a time, all else as printed.
+    """Evaluate every value of the parameters, one parameter at a time, with all others as printed.
 
-    A killed call goes on in the same folder: results that are there are taken from there.
+    A killed call resumes in the same folder and reuses its results.
 
     Returns:
         The page, and the curves.
 
     Raises:
         BadInput: the folder or the cluster cannot be used.
-        TasksFailed: some of it failed, after all else was done.
+        TasksFailed: some units failed, after all others were completed.
     """
     store = open_store(out / RESULTS)
     plays = {one.scenario: films.plays(one.scenario) for one in parameters}
@@ -200,7 +200,7 @@ def tune(
     plain = {one.parameter.name: one.plain() for one in tuned}
     (out / FIGURES).write_text(json.dumps(plain, indent=1) + "\n", encoding="utf-8")
     seeds = f"{films.seeds.start} to {films.seeds.stop - 1}"
-    return write_tuned_page(out, tuned, f"Seeds {seeds}, {films.seconds:g} s of each film at most."), tuned
+    return write_tuned_page(out, tuned, f"Seeds {seeds}, at most {films.seconds:g} s of each clip."), tuned
 
 
 def _tuned(parameter: Parameter, films: TrainingFilms, store: Store) -> Tuned:
@@ -212,7 +212,7 @@ def _tuned(parameter: Parameter, films: TrainingFilms, store: Store) -> Tuned:
 
 
 def write_tuned_page(out: Path, tuned: Sequence[Tuned], films: str) -> Path:
-    """Write NAME.svg for each parameter and a page that shows them."""
+    """Write NAME.svg for each parameter, and a page with all of them."""
     for one in tuned:
         name = one.parameter.name
         (out / f"{name}.svg").write_bytes(svg(_curve(one), name))
@@ -242,7 +242,7 @@ def _cells(one: Tuned) -> tuple[str, ...]:
 
 
 def _curve(one: Tuned) -> Figure:
-    """Draw area accuracy over the values, which are at equal distances."""
+    """Draw area accuracy over the values, at equal distances."""
     figure, axes = svg_axes(4.5, 2.8)
     values = list(one.accuracy)
     means = [figures.mean() for figures in one.accuracy.values()]

@@ -1,4 +1,4 @@
-"""Units of work: calls whose results are kept on disk, so that a killed run resumes."""
+"""Units of work: calls whose results are stored on disk, so that a killed run can resume."""
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -23,18 +23,18 @@ MEASURES = (
     *sorted((_HERE.parent / "training").rglob("*.py")),
     *sorted((_ROOT / "scenarios" / "library").glob("*.yaml")),
 )
-"""The files on which results depend, beside trackers and simulator."""
+"""Files on which results depend, besides trackers and simulator."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Unit:
-    """A call that any process can make, and whose result is plain data: the task that the engine runs.
+    """A call that any process can execute, with plain data as result: a task of the engine.
 
     Attributes:
-        key: what it is, in one line; no two units have the same.
-        function: of a module, so that it can be pickled.
-        arguments: of the call.
-        is_timing: whether it measures time, and has to run alone.
+        key: unique description in one line.
+        function: a module-level function, so that it can be pickled.
+        arguments: arguments of the call.
+        is_timing: whether it measures time, and must run alone.
     """
 
     size: ClassVar[int] = 1
@@ -46,7 +46,7 @@ class Unit:
 
     @classmethod
     def of(cls, function: Callable[..., Result], *arguments: Any, is_timing: bool = False) -> "Unit":
-        """Name a call by its function and arguments, folders left out: these change no result."""
+        """Return a unit whose key is function and arguments, without folders, which do not affect results."""
         words = (str(getattr(one, "key", one)) for one in arguments if not isinstance(one, Path))
         return cls(f"{function.__name__} {' | '.join(words)}", function, arguments, is_timing)
 
@@ -56,7 +56,7 @@ class Unit:
         return self.key
 
     def run(self) -> Result:
-        """Make the call."""
+        """Execute the call."""
         return self.function(*self.arguments)
 
     def __call__(self, report_progress: ReportProgress) -> tuple[Result, float]:  # noqa: ARG002
@@ -70,7 +70,7 @@ class Unfinished(Exception):  # noqa: N818
     """An experiment needs results that are missing.
 
     Attributes:
-        units: that have to run before it can go on.
+        units: units that must run before it can continue.
     """
 
     def __init__(self, units: Sequence[Unit]) -> None:
@@ -80,12 +80,12 @@ class Unfinished(Exception):  # noqa: N818
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measurement:
-    """What an experiment measures with: how much, and the results that are there.
+    """Plan and stored results of an experiment.
 
     Attributes:
-        plan: how much of everything.
-        done: results by the unit's key.
-        asked: keys of all units that the experiment has asked for.
+        plan: extent of the run.
+        done: results by key of the unit.
+        asked: keys of all units that the experiment has requested.
     """
 
     plan: Plan
@@ -95,7 +95,7 @@ class Measurement:
     def results(self, units: Iterable[Unit]) -> list[Result]:
         """Return the units' results, in their order.
 
-        An experiment asks for all units of a stage at once, so that they can run side by side.
+        An experiment requests all units of a stage at once, so that they can run in parallel.
 
         Raises:
             Unfinished: some units have no result yet.
@@ -108,7 +108,7 @@ class Measurement:
         return [self.done[unit.key] for unit in listed]
 
     def grouped(self, units: Mapping[Key, Sequence[Unit]]) -> dict[Key, list[Result]]:
-        """Return the results of groups of units, all of which can run side by side.
+        """Return the results of groups of units, which can all run in parallel.
 
         Raises:
             Unfinished: some units have no result yet.
@@ -122,9 +122,9 @@ class Measurement:
         """Return the results of a call by scenario, seed by seed.
 
         Args:
-            work: takes the scenario's name, a seed, and what follows.
-            scenarios: names.
-            seeds: how many, from 0.
+            work: function of the scenario's name, a seed, and further arguments.
+            scenarios: names of scenarios.
+            seeds: number of seeds, from 0.
             more: further arguments.
 
         Raises:
@@ -136,7 +136,7 @@ class Measurement:
 
 
 def open_store(path: Path) -> Store:
-    """Open the file of results; only those count that this code would give again.
+    """Open the file of results; only results of the current code are used.
 
     Raises:
         BadInput: its folder cannot be written to.
@@ -145,14 +145,14 @@ def open_store(path: Path) -> Store:
 
 
 def run_units(units: Sequence[Unit], store: Store, workers: Workers) -> None:
-    """Run the units that are not in the store yet, and keep each result as soon as it is there.
+    """Run the units that are not in the store yet, and store each result at once.
 
-    Units that measure time run one after the other in this process, after all others; several with the same
-    key run once.
+    Units that measure time run one after the other in this process, after all others; units with the same key
+    run once.
 
     Raises:
         BadInput: the cluster cannot be used.
-        TasksFailed: some units failed, after all others were done.
+        TasksFailed: some units failed, after all others were completed.
     """
     missing = {unit.key: unit for unit in units if unit.key not in store}
     failures: list[Failure] = []

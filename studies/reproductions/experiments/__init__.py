@@ -1,1 +1,1 @@
-"""The sources' experiments, one file for each kind."""
+"""Experiments of the sources, one module per kind."""

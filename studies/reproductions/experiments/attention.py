@@ -1,4 +1,4 @@
-"""Attention: whether its focus is on the person that it learned, and whether that person is recognised again.
+"""Attention experiments: focus on the learned person, and re-identification after an absence.
 
 Source: thesis on situation awareness, chapters 5 and 6.
 """
@@ -61,28 +61,28 @@ CHOICES: Final[Mapping[str, AttentionConfig]] = {
     "colour ratio alone": AttentionConfig(maps=False),
     DEFAULT: AttentionConfig(),
 }
-"""Attention as printed, and with settings changed, by the name that tables have for it.
+"""Attention as printed, and with changed settings, by the name used in tables.
 
-Those down to "neither of them" change one setting, or both, of "means, not sums"; from there on each has what
-the ones above it have. "matching maps" leaves out centre-surround, the two below it one thing more; the
+Those down to "neither of them" change one setting, or both, of "means, not sums"; from there on each includes
+the changes above it. "matching maps" omits centre-surround, the two below it one more element each; the
 default adds the ratio of colours to it.
 """
 
 EVERY: Final = 10
-"""Frames from one that is searched to the next: 1.5 a second."""
+"""Interval between searched frames: 1.5 per second."""
 FOLLOWS: Final = "follow_person"
-LEARNED: Final = 0.6  # visible share from which on a person can be learned
-PRESENT: Final = 0.3  # likewise searched for
+LEARNED: Final = 0.6  # minimum visible share to learn a person
+PRESENT: Final = 0.3  # minimum visible share to search for a person
 RIGHT, SECOND, WRONG = range(3)
 
-BACK: Final = 0.6  # visible share from which on a person is back
-GONE: Final = 0.3  # and below which away
-OVERLAP: Final = 0.3  # IoU from which on a track is on a person
-LEAST_VISIBLE: Final = 0.1  # share of a person on whom a track can be
+BACK: Final = 0.6  # visible share above which a person is back
+GONE: Final = 0.3  # visible share below which a person is away
+OVERLAP: Final = 0.3  # minimum IoU of a track on a person
+LEAST_VISIBLE: Final = 0.1  # minimum visible share of a person with a track
 
 FOCUS_SCENARIOS: Final = ("crossing_3", "same_uniform", "crowd_8", "follow_passers_by")
 FOCUS_SETS: Final = {"A": ("follow_passers_by",), "B": ("same_uniform", "crowd_8")}
-"""Scenarios for the thesis's sets: a person who leads the robot past others; people dressed alike."""
+"""Scenarios for the thesis's sets: a person leads the robot past others; people in equal clothes."""
 TRACKERS: Final = ("contour", "attentive-printed", "attentive")
 FOLLOWERS: Final = ("attentive", "contour")
 ABSENCES: Final = ("absence_10s", "absence_60s")
@@ -90,13 +90,13 @@ FOLLOWED: Final = "follow_absence"
 IN_TIME_S: Final = 1.0
 
 AWAY_S: Final = 8.0
-"""A person is away who is not followed for longer than this."""
+"""A person who is not followed for longer than this counts as absent."""
 LEFT_S: Final = 30.0
-"""An absence that the run's end cuts off sooner is not counted: how it would have ended is unknown."""
+"""An absence that the end of the run cuts off sooner is not counted, as its outcome is unknown."""
 
 
 def focus(using: Measurement) -> Samples:
-    """Measure how often the focus is on the learned person, a video being one person of one run (5.1)."""
+    """Measure how often the focus is on the learned person; a video is one person of one run (5.1)."""
     found = _focused(using)
     return {
         Line(group, name): as_columns(
@@ -108,7 +108,7 @@ def focus(using: Measurement) -> Samples:
 
 
 def _focus_shares(videos: Floats) -> dict[str, float]:
-    """Return shares of all images together, and means of videos (V, 3), also with the second best place."""
+    """Return shares of all images, and means over videos (V, 3), also with the second-best place."""
     right, second, whole = videos[:, RIGHT], videos[:, : SECOND + 1].sum(axis=1), videos.sum(axis=1)
     return {
         "pooled": right.sum() / whole.sum(),
@@ -120,7 +120,7 @@ def _focus_shares(videos: Floats) -> dict[str, float]:
 
 
 def focus_variants(using: Measurement) -> Samples:
-    """Measure the share of right focus with each reading of chapter 5, by scenario, one value a seed."""
+    """Measure the share of correct focus for each variant of chapter 5, by scenario, one value per seed."""
     return {
         Line(name, "measured"): {
             scenario: np.array([_share_right(_counts([run], name)) for run in runs])
@@ -135,18 +135,18 @@ def _share_right(people: Floats) -> float:
 
 
 def _focused(using: Measurement) -> dict[str, list[Result]]:
-    """Return the runs of each scenario, in which all variants of attention look for its people."""
+    """Return the runs of each scenario, in which all variants of attention search for its people."""
     plan = using.plan
     return using.played(watch_focus, FOCUS_SCENARIOS, plan.drives, tuple(CHOICES), plan.drive_s)
 
 
 def _counts(runs: Iterable[Result], name: str) -> Floats:
-    """Return what a variant's focus was on, (V, 3), for each person of each run."""
+    """Return the focus counts (V, 3) of a variant, for each person of each run."""
     return np.array([row for run in runs for row in run[name].values()], dtype=np.float64).reshape(-1, 3)
 
 
 def absences(using: Measurement) -> Samples:
-    """Measure who is recognised after an absence, and who is taken for that person meanwhile, by seed."""
+    """Measure re-identification after an absence, and false matches during it, by seed."""
     scenarios = ABSENCES[:1] if using.plan.is_quick else ABSENCES
     found = using.played(watch_absence, scenarios, using.plan.absences, TRACKERS)
     return {
@@ -169,7 +169,7 @@ def _recognised(runs: Sequence[Mapping[str, float | None]]) -> dict[str, Floats]
 
 
 def followers(using: Measurement) -> Samples:
-    """Measure whether a robot goes on with the person who was away, by seed."""
+    """Measure whether a robot resumes following a person after an absence, by seed."""
     seeds = range(using.plan.follows)
     found = using.grouped(
         {name: [Unit.of(watch_follower, FOLLOWED, seed, name) for seed in seeds] for name in FOLLOWERS}
@@ -188,7 +188,7 @@ def followers(using: Measurement) -> Samples:
 
 
 def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[Moment]:
-    """Play a scenario for the colour camera; a robot that follows a person is given the truth to follow."""
+    """Play a scenario for the colour camera; a robot that follows a person uses ground truth."""
     if scenario.robot.behaviour != FOLLOWS:
         yield from play(scenario, seed, COLOUR, images=(COLOUR,), every=every)
         return
@@ -200,24 +200,24 @@ def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[Mo
         for tick in closed_loop(world, oracle, behaviour, round(scenario.duration_s * config.control_hz)):
             if tick.frame % every == 1:
                 frame = Frame.from_observation(tick.observation, None, {})
-                frame.rgb(COLOUR)  # drawn now, as the world goes on
+                frame.rgb(COLOUR)  # rendered now, before the world advances
                 yield Moment(tick.frame, frame, world.truth(COLOUR), tick.observation)
 
 
 def wanted(scenario: Scenario, truth: Truth) -> list[PersonTruth]:
-    """List the people who are searched for: everybody, or the first one if the robot follows."""
+    """Return the people to search for: all, or only the first one if the robot follows."""
     is_led = scenario.robot.behaviour == FOLLOWS
     return [person for person in truth.people if not is_led or person.id == 1]
 
 
 def watch_focus(scenario: str, seed: int, names: Sequence[str], most_s: float) -> Result:
-    """Play a clip, cut where it is longer [s], once, and search for everybody in it by kinds of attention.
+    """Play a clip once, up to a length [s], and search for all people with variants of attention.
 
-    A person is learned from the box in the first image that shows most of it, and not again.
+    A person is learned once, from the box in the first image that shows most of the person.
 
     Returns:
-        Plain data: by the name in `CHOICES` and the person's id how often the focus was on the person, how
-        often only the second best place was, and how often neither.
+        Plain data: by the name in `CHOICES` and the person's id, how often the focus was on the person, how
+        often only the second-best place was, and how often neither.
     """
     counts: dict[str, dict[str, list[int]]] = {name: {} for name in names}
     learned: dict[str, dict[int, PersonModel]] = {name: {} for name in names}
@@ -261,7 +261,7 @@ def can_be_learned(person: PersonTruth, shape: tuple[int, ...]) -> bool:
 
 
 def verdict(focus: Focus, person: PersonTruth, truth: Truth) -> int:
-    """Return whether the focus, or the second best place, is on the visible pixels of a person."""
+    """Return whether the focus, or the second-best place, is on the visible pixels of a person."""
     if _is_on(focus.box, person, truth):
         return RIGHT
     return SECOND if _is_on(focus.second_box, person, truth) else WRONG
@@ -274,12 +274,12 @@ def _is_on(box: Box, person: PersonTruth, truth: Truth) -> bool:
 
 
 def watch_absence(scenario: str, seed: int, names: Sequence[str]) -> Result:
-    """Play a clip in which the first person goes away and comes back, and let trackers see it.
+    """Play a clip in which the first person leaves and comes back, and run trackers on it.
 
     Returns:
         Plain data by the tracker's name: "away", images in which the person is away, "accepted", how often
-        another person had its track then, "late_s", the time from when it is visible again until it has its
-        track, None for never, and "found_s" the same until it has any.
+        another person had its track then, "late_s", the time from reappearance until the person has its old
+        track, None for never, and "found_s" the time until it has any track.
     """
     trackers = {name: make_tracker(name, seed) for name in names}
     tracked: dict[str, list[dict[int, str]]] = {name: [] for name in names}
@@ -296,7 +296,7 @@ def watch_absence(scenario: str, seed: int, names: Sequence[str]) -> Result:
 
 
 def people_of_tracks(tracks: Sequence[Track], truth: Truth) -> dict[int, str]:
-    """Name the person on whom each visible track is."""
+    """Return the person that each visible track is on."""
     found = {}
     for track in tracks:
         if track.status in (Status.TENTATIVE, Status.TOTALLY_OCCLUDED) or THERMAL not in track.boxes:
@@ -316,7 +316,7 @@ def people_of_tracks(tracks: Sequence[Track], truth: Truth) -> dict[int, str]:
 def score_absence(
     rows: Sequence[Mapping[int, str]], visible: Sequence[float], leader: str, rate_hz: float
 ) -> dict[str, float | None]:
-    """Score the tracks of each image, by the person on whom they are, about a person with visible shares."""
+    """Score the re-identification of a person, from the people that tracks are on and visible shares."""
     gone, back = longest_gap(visible)
     ids = Counter(number for row in rows[:gone] for number, name in row.items() if name == leader)
     own = ids.most_common(1)[0][0] if ids else None
@@ -332,7 +332,7 @@ def score_absence(
 
 
 def longest_gap(visible: Sequence[float]) -> tuple[int, int]:
-    """Find the longest time in which a person is not visible: its first image, and that of the return."""
+    """Return the longest absence of a person: its first image, and the image of the return."""
     seen = [k for k, share in enumerate(visible) if share >= GONE]
     _, gone, later = max((later - one, one, later) for one, later in pairwise(seen))
     back = next((k for k in range(later, len(visible)) if visible[k] >= BACK), later)
@@ -340,16 +340,16 @@ def longest_gap(visible: Sequence[float]) -> tuple[int, int]:
 
 
 def watch_follower(scenario: str, seed: int, name: str) -> Result:
-    """Let a robot follow the first person of a scenario, who goes away and comes back, with a tracker.
+    """Run a robot that follows the first person of a scenario, who leaves and comes back, with a tracker.
 
     Returns:
-        Plain data: "images"; "right" and "wrong", in how many it follows the person and another one;
-        "absences", how often it did not follow the person for longer, and "resumed", after how many of those
-        it went on with this person.
+        Plain data: "images"; "right" and "wrong", the numbers of images in which it follows the person and
+        another one; "absences", the number of long interruptions, and "resumed", the number of those after
+        which it followed this person again.
     """
     from peopleboy.sim.world import SimulatedWorld  # here, as stored results can be read without PyBullet
 
-    world: SimulatedWorld  # the tracker looks at it only once it is built
+    world: SimulatedWorld  # the tracker reads it only when it is built
     tracker = make_named_tracker(name, seed, lambda: world.truth())
     played = load_scenario(scenario).mounting(tracker.cameras)
     config = played.world(seed)
@@ -371,13 +371,13 @@ def watch_follower(scenario: str, seed: int, name: str) -> Result:
 
 
 def resumptions(followed: list[str | None], leader: str, away: int, left: int) -> list[bool]:
-    """Return for each absence of a person whether the robot went on with this person after it.
+    """Return for each absence of a person whether the robot followed this person again after it.
 
     Args:
-        followed: name of the person that is followed, image by image.
-        leader: the person's name.
-        away: images from which on an absence counts ...
-        left: ... and of the last one, which the end cuts off.
+        followed: name of the followed person, image by image.
+        leader: name of the person.
+        away: minimum length of an absence, in images.
+        left: minimum length of a last absence, which the end cuts off, in images.
     """
     ours = [k for k, name in enumerate(followed) if name == leader]
     ends = [*ours[1:], len(followed)]

@@ -1,4 +1,4 @@
-"""Experiments that measure time: of the trackers' steps on a drawn image, and of attention."""
+"""Measure computing times: of the trackers' steps on a synthetic image, and of attention."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -46,14 +46,14 @@ from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 
 MS: Final = "ms"
 TURNS: Final = 5
-"""How often a table is measured."""
+"""Number of times that a table is measured."""
 SHAPE = (240, 320)
 COUNT = 1000
 Milliseconds = dict[str, float]
 
 
 def drawn_people(count: int) -> NDArray[np.uint8]:
-    """Draw warm people side by side on a cool background, (240, 320)."""
+    """Return an image (240, 320) of warm people side by side on a cool background."""
     v, u = np.mgrid[: SHAPE[0], : SHAPE[1]]
     image = np.full(SHAPE, 30, dtype=np.uint8)
     for number in range(count):
@@ -74,7 +74,7 @@ def frame_of(people: int, time_s: float = 0.0) -> Frame:
 
 
 def milliseconds(work: Callable[[], object], steps: int) -> float:
-    """Time something: the median of the processor's time over many calls, after a few to warm up [ms]."""
+    """Return the median processor time [ms] over many calls, after a few to warm up."""
     for _ in range(5):
         work()
     times = []
@@ -115,13 +115,13 @@ def time_steps(setting: TrackerSetting, steps: int) -> Milliseconds:
 
 
 def time_counts(setting: TrackerSetting, steps: int) -> Milliseconds:
-    """Time one step of a filter with fewer samples than usual, and with as many (thesis, section 4.4)."""
+    """Time one step of a filter with a reduced and the default number of samples (thesis, section 4.4)."""
     config = replace(setting.config(), colour=None, appearance=None)
     return {str(count): _time_colour(config, None, steps, count) for count in (300, COUNT)}
 
 
 def time_attention(setting: TrackerSetting, steps: int) -> Milliseconds:
-    """Time what it takes to find a person in an image of 320 x 240 by attention, printed or the default."""
+    """Time the search for a person in an image of 320 x 240 by attention, as printed and by default."""
     config = PRINTED if setting.base == "printed" else AttentionConfig()
     noise = stream(0, "reproduce.timing").integers(0, 256, (*SHAPE, 3), dtype=np.uint8)
     image = np.asarray(cv2.GaussianBlur(noise, (0, 0), 6.0), np.uint8)
@@ -149,7 +149,7 @@ def time_people(setting: TrackerSetting, steps: int) -> Milliseconds:
 
 
 def _time_crowd(setting: TrackerSetting, people: int, steps: int) -> float:
-    """Time frames in which every person has a filter, over the number of filters [ms]; NaN of none."""
+    """Return the time of frames in which every person has a filter, per filter [ms]; NaN without any."""
     tracker = setting.make(stream(0, "reproduce.timing"))
     image, times = frame_of(people), []
     for number in range(60 * (people + 1) + 10 * steps):
@@ -230,20 +230,20 @@ TIMES: Final[Mapping[str, Callable[[TrackerSetting, int], Milliseconds]]] = {
     "colours": time_colours,
     "attention": time_attention,
 }
-"""By the name that declarations have for them."""
+"""Timings by their name in declarations."""
 
 
 def time_named(times: str, base: str, steps: int) -> Milliseconds:
-    """Time the steps of a tracker, each so many times."""
+    """Times the steps of a tracker, each this many times."""
     return TIMES[times](TrackerSetting(base), steps)
 
 
 def timing(using: Measurement, *, times: str, trackers: Mapping[str, str]) -> Samples:
-    """Time every step of trackers, several times over.
+    """Time every step of trackers, several times.
 
     Args:
-        using: how much is measured, and what is there.
-        times: what is timed, as in `TIMES`.
+        using: the plan and stored results.
+        times: the kind of timing, as in `TIMES`.
         trackers: base by the column's name.
     """
     steps = using.plan.timing_steps

@@ -1,4 +1,4 @@
-"""The paper's experiments again: distance by a general and by personal models, position with the filter."""
+"""Repeat the paper's experiments: distance by general and personal models, position with the filter."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -27,7 +27,7 @@ PAPER_SQUARE_M2: Final = 0.154**2 + 0.094**2
 
 
 def random_split(count: int, rng: np.random.Generator) -> tuple[Rows, Rows]:
-    """Split so many images at random, 30 to 70, as the paper does; neighbours in time are much alike."""
+    """Split images at random, 30 to 70, as in the paper; neighbours in time are correlated."""
     order = rng.permutation(count)
     cut = round(TRAINING_SHARE * count)
     return np.sort(order[:cut]), np.sort(order[cut:])
@@ -38,12 +38,12 @@ SPLITS = {"random": random_split, "blocks": block_split}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SplitTrial:
-    """How a film's images are learned from and tested with.
+    """How the images of a clip are split into training and test images.
 
     Attributes:
         split: one of `SPLITS`.
-        repeats: how many splits; the paper has 10 (section 6.1).
-        settings: of the networks' training.
+        repeats: number of splits; the paper has 10 (section 6.1).
+        settings: training settings of the networks.
     """
 
     split: str
@@ -51,17 +51,17 @@ class SplitTrial:
     settings: Backpropagation = field(default_factory=Backpropagation)
 
     def parts(self, count: int, repeat: int) -> tuple[Rows, Rows, np.random.Generator]:
-        """Split so many images: those to learn from, the others, and what is random from there on."""
+        """Return training images, test images, and the random generator for the training."""
         rng = np.random.default_rng((0, repeat))
         return *SPLITS[self.split](count, rng), rng
 
 
 def general_networks(run: DistanceSamples, trial: SplitTrial) -> list[tuple[Rows, Floats]]:
-    """Teach one network for everybody in each split.
+    """Train one network for all people in each split.
 
     Returns:
-        Of each split, the images (N,) that were not learned from, and the distances [m] that the network
-        tells in all images of the film.
+        For each split, the test images (N,), and the distances [m] that the network estimates in all images
+        of the clip.
     """
     found = []
     for repeat in range(trial.repeats):
@@ -71,7 +71,7 @@ def general_networks(run: DistanceSamples, trial: SplitTrial) -> list[tuple[Rows
 
 
 def general_trials(run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]]) -> ImageErrors:
-    """Test the networks of `general_networks` on the images that they did not learn from.
+    """Test the networks of `general_networks` on the images that they were not trained on.
 
     Source: OMNIVIS 2003, section 6.1.
     """
@@ -80,7 +80,7 @@ def general_trials(run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]]) 
 
 
 def personal_trials(run: DistanceSamples, trial: SplitTrial) -> dict[tuple[int, int], ImageErrors]:
-    """Teach each person's own network, and test it on everybody, by person tested and person taught.
+    """Train a network for each person, and test it on all people; results by tested and training person.
 
     Each person's images are split, and the same 70 % of them test all networks.
 
@@ -108,22 +108,22 @@ FILTERS = {
     "own Q and R, u = last step": ("own", True),
     "own Q and R, u = 0": ("own", False),
 }
-"""Ways to tell a position: whose noise is believed, and whether the filter predicts by a velocity.
+"""Position estimators: the noise covariances of the filter, and whether it predicts with a velocity.
 
-The paper says that "the estimated velocity" predicts: `KALMAN` takes the printed Q and R, and the last step.
+In the paper "the estimated velocity" predicts: `KALMAN` uses the printed Q and R, and the last step.
 """
 
 
 def position_trials(
     run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]], *, is_noisy: bool = False
 ) -> dict[str, ImageErrors]:
-    """Return positions with and without the filter, which sees all images in their order; 70 % of them count.
+    """Return position errors with and without the filter, which runs on all images; 70 % of them count.
 
-    Own Q and R are those of the whole film, so that they are as good as they can be.
+    Own Q and R are those of the whole clip, so that they are as good as possible.
 
     Args:
-        run: the film's examples.
-        taught: networks, of `general_networks`.
+        run: samples of the clip.
+        taught: networks, from `general_networks`.
         is_noisy: whether measurements are made as noisy as the paper's (`as_noisy_as_printed`).
 
     Source: OMNIVIS 2003, section 6.2.
@@ -142,7 +142,7 @@ def position_trials(
 def new_people_trials(
     taught: Sequence[DistanceSamples], tested: Sequence[DistanceSamples], settings: Backpropagation
 ) -> list[ImageErrors]:
-    """Teach one network on whole films, and test it on each of others, in which other people walk."""
+    """Train one network on whole clips, and test it on clips with other people."""
     cues, distances = (np.concatenate(parts) for parts in zip(*map(_samples, taught), strict=True))
     network = fit_distances(cues, distances, np.random.default_rng(0), settings)
     return [
@@ -156,7 +156,7 @@ def new_people_trials(
 def correlations(run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]]) -> Floats:
     """Return the linear correlation (4,) with the true distance: of each cue, and of a network's estimate.
 
-    The first network is tested on images that it was not taught on, the cues on all.
+    The first network is tested on images that it was not trained on, the cues on all.
 
     Source: OMNIVIS 2003, figure 5.
     """
@@ -166,7 +166,7 @@ def correlations(run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]]) ->
 
 
 def predicted_in_turn(run: DistanceSamples, trial: SplitTrial) -> Floats:
-    """Return the distances (N,) [m] of all images of a film, each by a network that did not learn from it."""
+    """Return the distances (N,) [m] of all images of a clip, each by a network not trained on it."""
     predicted, repeat = np.full(len(run.cues), np.nan), 0
     while np.isnan(predicted).any():
         training, rest, rng = trial.parts(len(run.cues), repeat)
@@ -183,7 +183,7 @@ def _samples(run: DistanceSamples) -> tuple[Floats, Floats]:
 def _predict(
     run: DistanceSamples, training: Rows, settings: Backpropagation, rng: np.random.Generator
 ) -> Floats:
-    """Teach a network on some images, and let it tell the distances (N,) in all."""
+    """Train a network on some images, and return its distances (N,) [m] in all images."""
     return fit_distances(run.cues[training], run.distance_m[training], rng, settings).predict(run.cues)
 
 
@@ -197,7 +197,7 @@ def _positions(run: DistanceSamples, measured: Floats, name: str) -> Floats:
 
 
 def filtered(run: DistanceSamples, measured: Floats, position_filter: PositionFilter) -> Floats:
-    """Filter positions (N, 2) [m]; the filter starts anew with each person."""
+    """Return filtered positions (N, 2) [m]; the filter is reset for each person."""
     predicted = [position_filter.start(measured[0])]
     for k in range(1, len(measured)):
         if run.person[k] != run.person[k - 1]:
@@ -211,8 +211,8 @@ def filtered(run: DistanceSamples, measured: Floats, position_filter: PositionFi
 def as_noisy_as_printed(run: DistanceSamples, measured: Floats, rng: np.random.Generator) -> Floats:
     """Add white noise to positions (N, 2) [m] until their mean squared error is the paper's.
 
-    The noise has the shape of the printed R, and as much of it as is missing; positions that are worse than
-    the paper's stay as they are.
+    The noise has the shape of the printed R, scaled to the missing error; positions that are worse than the
+    paper's are unchanged.
     """
     error = float(((measured - run.true_m) ** 2).sum(axis=1).mean())
     share = max(PAPER_SQUARE_M2 - error, 0.0) / float(np.trace(PRINTED.measurement_m2))

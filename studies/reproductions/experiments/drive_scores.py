@@ -1,4 +1,4 @@
-"""Tracks on the floor against the people who stand there: hits, misses, false alarms, errors."""
+"""Score tracks on the floor against ground truth: hits, misses, false positives, errors."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
@@ -16,11 +16,11 @@ from peopleboy.tracker.track import Track
 Floats = NDArray[np.float64]
 
 FARTHEST_M: Final = 10.0
-LEAST_PX: Final = 200  # of a person who counts; fewer are a hand or a foot
+LEAST_PX: Final = 200  # minimum for a counted person; fewer are a hand or a foot
 RADIUS_M: Final = 1.0
-"""SA 4.7.2: a person is found if a track lies within this distance."""
+"""SA 4.7.2: a person is found if a track is within this distance."""
 
-_PRIORITY_M: Final = 10.0  # by which people who count are preferred in the assignment
+_PRIORITY_M: Final = 10.0  # preference of counted people in the assignment
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +29,9 @@ class FloorPerson:
 
     Attributes:
         place_m: forward, left of the robot [m], of the body's middle.
-        surface_m: the same of the surface that the camera sees in the middle of the person; None for none.
-        is_counted: whether a tracker has to find the person.
-        truth: all that is known of the person.
+        surface_m: the same of the visible surface in the middle of the person; None for none.
+        is_counted: whether a tracker should find the person.
+        truth: ground truth of the person.
     """
 
     place_m: tuple[float, float]
@@ -41,7 +41,7 @@ class FloorPerson:
 
 
 def people_on_floor(truth: Truth, view: DepthView) -> Iterator[FloorPerson]:
-    """Place everybody who is there, seen by a depth camera or not."""
+    """Return all people who are present, visible to a depth camera or not."""
     for person in truth.people:
         is_counted = person.visible_px > LEAST_PX and person.distance_m <= FARTHEST_M
         surface_m = _surface(person, truth, view) if is_counted else None
@@ -49,7 +49,7 @@ def people_on_floor(truth: Truth, view: DepthView) -> Iterator[FloorPerson]:
 
 
 def _surface(person: PersonTruth, truth: Truth, view: DepthView) -> tuple[float, float] | None:
-    """Find the surface at the middle of a person's box, which the thesis takes for the person's place."""
+    """Return the surface at the middle of a person's box, which the thesis uses as the person's position."""
     if person.visible_box is None:
         return None
     left, top, width, height = person.visible_box
@@ -71,18 +71,18 @@ def _middle_half(first: float, size: float) -> slice:
 
 @dataclass(slots=True, eq=False)
 class DriveScore:
-    """The tracks of a drive against the truth.
+    """Scores the tracks of a drive against ground truth.
 
-    Tracks and people are assigned one to one, frame by frame, with the least sum of distances; people who
-    count go first. A track on a person who does not count is neither right nor wrong.
+    Tracks and people are assigned one to one, frame by frame, with the least sum of distances; counted people
+    are preferred. A track on a person who is not counted is neither a hit nor a false positive.
 
     Attributes:
-        body_m: [m] from the surface to where the tracker puts a person.
-        hits: rows of frame, person, track, error forward and left [m] against the body's middle, and both
-            against the surface that is seen (NaN as None where there is none).
+        body_m: [m] from the surface to the tracker's position of a person.
+        hits: rows of frame, person, track, error forward and left [m] to the centre of the body, and both to
+            the visible surface (None without one).
         missed: rows of frame, person.
-        false: rows of frame, track, place forward and left [m].
-        frames: how many.
+        false: rows of frame, track, position forward and left [m].
+        frames: number of frames.
     """
 
     body_m: float = 0.0
@@ -92,7 +92,7 @@ class DriveScore:
     frames: int = 0
 
     def add(self, frame: int, people: Sequence[FloorPerson], tracks: Sequence[Track]) -> None:
-        """Take in a frame."""
+        """Add a frame."""
         self.frames += 1
         places = np.array([track.place.position_m for track in tracks if track.place]).reshape(-1, 2)
         found = associate(people, places)
@@ -109,7 +109,7 @@ class DriveScore:
             self.false.append((frame, tracks[number].id, x, y))
 
     def plain(self) -> dict[str, Any]:
-        """Return it as plain data."""
+        """Return the score as plain data."""
         return {"frames": self.frames, "hits": self.hits, "missed": self.missed, "false": self.false}
 
     def _hit(self, frame: int, person: FloorPerson, track: int, place: Floats) -> tuple[float | None, ...]:
@@ -122,7 +122,7 @@ class DriveScore:
 
 
 def associate(people: Sequence[FloorPerson], places_m: Floats, radius_m: float = RADIUS_M) -> dict[int, int]:
-    """Assign places (N, 2) to people, one to one; give the place's number by the person's."""
+    """Assign positions (N, 2) to people, one to one; return the index of the position by person."""
     if not people or not len(places_m):
         return {}
     standing = np.array([person.place_m for person in people])
@@ -139,14 +139,14 @@ class TrackingRecord:
     """The result of one drive, or of several together.
 
     Attributes:
-        frames: how many.
+        frames: number of frames.
         hits: (N, 7) rows as in `DriveScore`, NaN for None.
-        missed: how often a person was.
-        false: how many false alarms.
-        switches: how often a person's track was another one than the last time.
+        missed: number of misses.
+        false: number of false positives.
+        switches: number of identity switches.
         ms: median time of a frame.
-        bands: (4, 2) who counts and who of them the pre-detection found, by the share that is hidden.
-        false_sizes: how many pre-detections were of nobody.
+        bands: (4, 2) counted people, and those found by the pre-detection, by hidden share.
+        false_sizes: number of false pre-detections.
     """
 
     frames: int
@@ -177,39 +177,39 @@ class TrackingRecord:
     def joined(cls, records: "Iterable[TrackingRecord]") -> "TrackingRecord":
         """Take drives together."""
         parts = list(records)
-        join: dict[str, Callable[..., Any]] = {"hits": np.concatenate, "ms": np.mean}  # all others add up
+        join: dict[str, Callable[..., Any]] = {"hits": np.concatenate, "ms": np.mean}  # all others are sums
         columns = {one.name: [getattr(part, one.name) for part in parts] for one in fields(cls)}
         return cls(
             **{name: join.get(name, partial(np.sum, axis=0))(column) for name, column in columns.items()}
         )
 
     def found(self, radius_m: float = RADIUS_M) -> int:
-        """Count the hits within a distance of the person."""
+        """Return the number of hits within a distance of the person."""
         return int(np.count_nonzero(self.error_m <= radius_m))
 
     def rate(self, radius_m: float = RADIUS_M) -> float:
-        """Return the share of the people who count that was found (SA eq. 4.30); NaN without people."""
+        """Return the share of counted people who were found (SA eq. 4.30); NaN without people."""
         people = len(self.hits) + self.missed
         return self.found(radius_m) / people if people else float("nan")
 
     def false_per_frame(self, radius_m: float = RADIUS_M) -> float:
-        """Return tracks on nobody a frame; those on a person who is too far away count, too."""
+        """Return false positives per frame, including hits beyond the distance."""
         return (self.false + len(self.hits) - self.found(radius_m)) / self.frames
 
     @property
     def error_m(self) -> Floats:
-        """(N,) distance of each hit from the middle of the body [m]."""
+        """Distance (N,) of each hit from the centre of the body [m]."""
         return np.asarray(np.hypot(self.hits[:, 3], self.hits[:, 4]))
 
     @property
     def surface_error_m(self) -> Floats:
-        """(M,) distance of each hit from the surface that is seen [m]."""
+        """Distance (M,) of each hit from the visible surface [m]."""
         errors = np.hypot(self.hits[:, 5], self.hits[:, 6])
         return np.asarray(errors[np.isfinite(errors)])
 
     @property
     def size_recall(self) -> Floats:
-        """(4,) recall of the pre-detection, by the share that is hidden; NaN without people."""
+        """Recall (4,) of the pre-detection, by hidden share; NaN without people."""
         with np.errstate(invalid="ignore"):
             return np.asarray(self.bands[:, 1] / self.bands[:, 0])
 

@@ -1,4 +1,4 @@
-"""Drives with a depth camera: the twelve data sets, the trackers that are compared, and their tracks."""
+"""Run trackers on drives with a depth camera: the twelve data sets, and the compared trackers."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -43,14 +43,14 @@ SETS: Final = (
     "fast_turn_near",
     "group_abreast_moving",
 )
-"""Scenarios that stand for the data sets of the thesis on situation awareness, by the set's number from 1.
+"""Scenarios that replace the data sets of the thesis on situation awareness, by number of the set, from 1.
 
 Followers are scripted, so that the tracker cannot change the recording. Light changes in steps; the spots of
 ceiling lamps that gave the thesis its false alarms do not exist here.
 """
 
 TURNS: Final = "fast_turn"
-"""The scenario in which the robot turns most, which shows what odometry is worth."""
+"""The scenario with the most rotation of the robot, to measure the benefit of odometry."""
 
 DEFAULT, LITERAL = "default", "as printed"
 NO_CONNECTOR, NO_ODOMETRY = "no connector", "no odometry"
@@ -66,7 +66,7 @@ COLOUR_ONLY: Final = replace(
     least_near_score=0.2,
     hypotheses=replace(OURS.hypotheses, births=2),
 )
-"""Judges windows by colour alone, which needs a second look."""
+"""Classifies windows by colour alone, which requires a second detection before a track starts."""
 
 CHOICES: Final[Mapping[str, RgbdConfig]] = {
     DEFAULT: OURS,
@@ -83,31 +83,31 @@ CHOICES: Final[Mapping[str, RgbdConfig]] = {
     NO_DEPTH: replace(OURS, filter=replace(OURS.filter, kernel_m=1000.0)),
     NO_ODOMETRY: replace(OURS, hypotheses=replace(OURS.hypotheses, uses_odometry=False)),
 }
-"""The RGB-D tracker, and the same with one setting changed, by the name that tables have for it."""
+"""The RGB-D tracker, and variants with one setting changed, by the name used in tables."""
 
 BANDS: Final = (0.1, 0.4, 0.7, 1.0)
-"""Upper limits of the hidden share by which recall of the pre-detection is given."""
+"""Upper limits of the hidden share for recall of the pre-detection."""
 
 _HALF: Final = 0.5
 _NEAR_M: Final = 0.5
 
 
 def set_name(number: int) -> str:
-    """Name a set as tables do."""
+    """Return the name of a set in tables."""
     return f"set {number}"
 
 
 def make_choice(name: str, rng: np.random.Generator) -> RgbdTracker:
-    """Make one of `CHOICES`."""
+    """Create a tracker, one of `CHOICES`."""
     config = CHOICES[name]
     model = people_detector() if name == OPENCV else shipped_windows(sees_depth=config.sees_depth)
     return RgbdTracker(config, model, rng)
 
 
 def play_drive(scenario: Scenario, seed: int) -> Iterator[tuple[Moment, tuple[FloorPerson, ...]]]:
-    """Play a scenario, and yield every image of the depth camera with the people who are there.
+    """Play a scenario, and yield every image of the depth camera with the people present.
 
-    A robot without a depth camera gets one.
+    A depth camera is added to a robot without one.
 
     Raises:
         BadInput: the robot needs a tracker to drive.
@@ -119,10 +119,10 @@ def play_drive(scenario: Scenario, seed: int) -> Iterator[tuple[Moment, tuple[Fl
 
 
 class DriveTracking:
-    """One tracker of `CHOICES` on a drive, its score and its time.
+    """A tracker of `CHOICES` on a drive, with its score and its time.
 
     Args:
-        name: of the tracker.
+        name: name of the tracker.
     """
 
     def __init__(self, name: str) -> None:
@@ -144,18 +144,18 @@ class DriveTracking:
         self._count_pre_detections(people)
 
     def plain(self) -> dict[str, Any]:
-        """Return all that was measured as plain data; "tracks" has rows of frame, track, place."""
+        """Return all measurements as plain data; "tracks" has rows of frame, track, position."""
         pre = {"bands": self._found.tolist(), "false": self._false}
         ms = round(self._timed.median_ms, 2)
         return self._score.plain() | {"ms": ms, "pre": pre, "tracks": self.rows}
 
     def _count_pre_detections(self, people: Sequence[FloorPerson]) -> None:
-        """Count people who are found by size alone, by how much of them is hidden, and false detections.
+        """Count people found by size alone, by hidden share, and false detections.
 
-        People of whom the border cuts off half are left out, as these have not the size of a human.
+        People cut off by half at the border are omitted, as their visible part has not the size of a person.
         """
         explanation = self.tracker.explanation
-        assert explanation is not None  # it has seen a frame
+        assert explanation is not None  # at least one frame was processed
         places = np.array([one.place_m for one in explanation.detections]).reshape(-1, 2)
         found = associate(people, places, _NEAR_M)
         for number, person in enumerate(people):
@@ -166,18 +166,18 @@ class DriveTracking:
 
 
 def watch_drive(scenario: str, seed: int, names: Sequence[str], scale: float, most_s: float) -> Result:
-    """Play a drive once, and let trackers see it.
+    """Play a drive once, and run trackers on it.
 
     Args:
-        scenario: its name.
-        seed: of the run.
-        names: of `CHOICES`.
-        scale: of the depth's noise.
-        most_s: length [s] at which it is cut.
+        scenario: name of the scenario.
+        seed: seed of the run.
+        names: names of trackers in `CHOICES`.
+        scale: scale of the depth noise.
+        most_s: maximum length [s].
 
     Returns:
-        Plain data: what each tracker did, by its name; "truth", rows of frame, person, place forward and left
-        of the robot [m], distance [m], hidden share, whether it counts, and "robot", its pose by frame.
+        Plain data: the results of each tracker, by name; "truth", rows of frame, person, position forward and
+        left of the robot [m], distance [m], hidden share, whether counted, and "robot", its pose by frame.
     """
     played = shortened(scenario, most_s)
     if scale != 1.0:
@@ -195,11 +195,11 @@ def watch_drive(scenario: str, seed: int, names: Sequence[str], scale: float, mo
 
 
 def watch_legs(scenario: str, most_s: float) -> Result:
-    """Follow the person of a drive, cut where it is longer [s], by legs and by depth and colour (SA 4.7.7).
+    """Track the person of a drive, up to a length [s], by legs and by depth and colour (SA 4.7.7).
 
     Returns:
-        Plain data: "truth" as of `watch_drive`, and "depth" and "legs", rows of frame, track, place forward
-        and left of the robot [m].
+        Plain data: "truth" as in `watch_drive`, and "depth" and "legs", rows of frame, track, position
+        forward and left of the robot [m].
     """
     tracking, legs = DriveTracking(DEFAULT), LegTracker()
     truth: list[tuple[float, ...]] = []
@@ -213,7 +213,7 @@ def watch_legs(scenario: str, most_s: float) -> Result:
 
 
 def _truth_row(frame: int, person: FloorPerson) -> tuple[float, ...]:
-    """Return frame, person, place, distance, hidden share, and whether the person counts."""
+    """Return frame, person, position, distance, hidden share, and whether the person is counted."""
     distance_m, hidden = round(person.truth.distance_m, 2), round(person.truth.occluded_fraction, 3)
     return (*_row(frame, person.truth.id, person.place_m), distance_m, hidden, int(person.is_counted))
 

@@ -28,14 +28,14 @@ from peopleboy.studies.reproductions.units import Measurement, Unit
 ALL, MEASURED = "all", "measured"
 MAIN: Final = (DEFAULT, LITERAL)
 ABLATED: Final = (4, 6, 7, 10, 11, 12)
-"""Numbers of the sets on which trackers are compared that differ in one thing."""
+"""Numbers of the sets for comparing trackers that differ in one setting."""
 NOISIEST: Final = 3.0
 _FOLLOWED: Final = 2  # number of the set in which the robot follows a person
 _RANGES_M: Final = {"up to 3 m": (0.0, 3.0), "3 to 5 m": (3.0, 5.0), "5 to 10 m": (5.0, 10.0)}
 
 Value = Callable[[TrackingRecord], float]
 Drives = Mapping[str, Sequence[Result]]
-"""What trackers did, by scenario, seed by seed."""
+"""Results of trackers, by scenario, one per seed."""
 
 
 def tracked(record: TrackingRecord) -> Row:
@@ -104,14 +104,14 @@ def drives(
     drives: str = "sets",
     by_set: bool = False,
 ) -> Samples:
-    """Score trackers on drives, one value a seed.
+    """Score trackers on drives, one value per seed.
 
     Args:
-        using: how much is measured, and what is there.
-        groups: `tracker`, if it is not the default and the literal one, `scale` of the depth's noise, and
-            `columns` with what these take.
+        using: the plan and stored results.
+        groups: `tracker`, unless default and literal, `scale` of the depth noise, and `columns` with their
+            arguments.
         columns: one of `COLUMNS`.
-        drives: "sets", or those that are "ablated", or those with many "turns".
+        drives: "sets", "ablated" for ablations, or "turns" for drives with much rotation.
         by_set: whether there is a group for each set, and one for all of them.
     """
     declared = {name: {"columns": columns, **own} for name, own in (groups or {}).items()}
@@ -141,7 +141,7 @@ _WANTED: Final[Mapping[str, Value]] = {
 
 
 def goals(using: Measurement) -> Samples:
-    """Estimate what this project wants of its tracker: values with 95 % intervals over seeds."""
+    """Measure the goals of this project: values with 95 % intervals over seeds."""
     kinds = {"sets": ("sets", 1.0), "noisy": ("ablated", NOISIEST), "turns": ("turns", 1.0)}
     played = play_drives(using, kinds)
     everything = by_seed(played["sets"], DEFAULT)
@@ -172,7 +172,7 @@ def _with_interval(parts: Sequence[Any], value: Callable[[Sequence[Any]], float]
 
 
 def legs(using: Measurement) -> Samples:
-    """Find by range in which share of the images the person is found, by depth and by legs."""
+    """Measure the share of images in which the person is found, by range, with depth and with legs."""
     run = legs_run(using)
     return {
         Line(group, name): as_columns([{"rate": _found(run["truth"], run[key], *limits)}])
@@ -182,7 +182,7 @@ def legs(using: Measurement) -> Samples:
 
 
 def legs_run(using: Measurement) -> Result:
-    """Return the drive on which a person is followed by legs, too."""
+    """Return the drive in which a person is also tracked by legs."""
     (run,) = using.results([Unit.of(watch_legs, SETS[_FOLLOWED - 1], using.plan.drive_s)])
     return run
 
@@ -190,7 +190,7 @@ def legs_run(using: Measurement) -> Result:
 def _found(
     truth: Sequence[Sequence[float]], tracked: Sequence[Sequence[float]], nearest_m: float, farthest_m: float
 ) -> float:
-    """Return in which share of the images a person in plain view and range is placed within 1 m."""
+    """Return the share of images in which a clearly visible person in range is located within 1 m."""
     places: dict[int, list[Sequence[float]]] = {}
     for frame, _, *place in tracked:
         places.setdefault(int(frame), []).append(place)
@@ -203,14 +203,14 @@ def _found(
 
 
 def play_drives(using: Measurement, wanted: Mapping[str, tuple[str, float]]) -> dict[str, Drives]:
-    """Return drives of several kinds, each with the depth's noise scaled; all are asked for at once."""
+    """Return drives of several kinds, each with scaled depth noise; all are requested at once."""
     units = {name: drive_units(using.plan, *kind) for name, kind in wanted.items()}
     using.results(unit for one in units.values() for several in one.values() for unit in several)
     return {name: using.grouped(one) for name, one in units.items()}
 
 
 def drive_units(plan: Plan, kind: str, scale: float) -> dict[str, list[Unit]]:
-    """List drives of a kind; with the usual noise all trackers see those that are ablated."""
+    """Return the units of drives of a kind; at normal noise, ablated drives run all trackers."""
     names: tuple[str, ...]
     if kind == "turns":
         scenarios, seeds, names = [TURNS], 2 * plan.drives, (DEFAULT, NO_ODOMETRY)
@@ -234,5 +234,5 @@ def by_seed(played: Drives, tracker: str) -> list[TrackingRecord]:
 
 
 def median(errors: Floats) -> float:
-    """Return the median (N,); NaN of nothing."""
+    """Return the median of values (N,); NaN without values."""
     return float(np.median(errors)) if errors.size else float("nan")

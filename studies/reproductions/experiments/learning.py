@@ -1,4 +1,4 @@
-"""Experiments on learning which of two people is in front: the thesis's tables 7.1 to 7.4."""
+"""Experiments on classifying which of two people is in front: the thesis's tables 7.1 to 7.4."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -29,7 +29,7 @@ from peopleboy.tracker.contour.occlusion.weak_classifiers import weighted_sums
 
 CLASSIFIERS, PAIRS = "weak classifiers", "pairs"
 THESIS_PAIRS: Final = 121
-"""How many pairs the thesis has; with their mirror images, 242 examples."""
+"""Number of pairs in the thesis; with their mirror images, 242 samples."""
 SCENES: Final = (
     *SCENARIOS,
     "dark_crossing",
@@ -39,10 +39,10 @@ SCENES: Final = (
     "hall_visits",
     "corridor_patrol",
 )
-"""Where examples come from: those of the shipped tables, harder ones, and the runs of data sets 3 and 4."""
+"""Sources of the samples: scenarios of the shipped tables, harder ones, and runs of data sets 3 and 4."""
 TESTS: Final = ("held out", "unseen scenarios")
 TRACKERS: Final = {"literal": TrackerSetting("thesis-occlusion"), "default": TrackerSetting("contour")}
-"""Who measures the examples; the thesis does not test on other scenes than those it learned from."""
+"""Trackers that measure the samples; the thesis has no test on scenes outside its training set."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +50,8 @@ class Classifiers:
     """How weak classifiers are built.
 
     Attributes:
-        features: names of those that they use.
-        most: how many of them are added up.
+        features: names of the features.
+        most: maximum number of features in a sum.
     """
 
     features: Sequence[str] = FEATURES
@@ -59,10 +59,10 @@ class Classifiers:
 
 
 def learning(using: Measurement, *, groups: Mapping[str, Mapping[str, Any] | None]) -> Samples:
-    """Compare ways to build weak classifiers by the share of right answers, split by split.
+    """Compare kinds of weak classifiers by the share of correct answers, split by split.
 
     Args:
-        using: how much is measured, and what is there.
+        using: the plan and stored results.
         groups: fields of `Classifiers` by name.
     """
     most = 3 if using.plan.triplets else 2
@@ -80,7 +80,7 @@ def learning(using: Measurement, *, groups: Mapping[str, Mapping[str, Any] | Non
 
 
 def best_classifiers(using: Measurement) -> Samples:
-    """List the weights of those chosen first, of the first split; NaN for features that one does not use."""
+    """Return the weights of the classifiers chosen first, of the first split; NaN for unused features."""
     _, learned = _learned(using, {"both": Classifiers()})
     return {
         Line(str(place), tracker): {name: np.array([weights.get(name, np.nan)]) for name in FEATURES}
@@ -92,7 +92,7 @@ def best_classifiers(using: Measurement) -> Samples:
 def _learned(
     using: Measurement, ways: Mapping[str, Classifiers]
 ) -> tuple[dict[str, int], dict[tuple[str, str], list[Result]]]:
-    """Collect the examples, then learn from them: their number by tracker, and each way's splits."""
+    """Collect samples and train: return their number by tracker, and the splits of each kind."""
     plan = using.plan
     collected = using.grouped(
         {
@@ -119,7 +119,7 @@ def _learned(
 
 
 def learn_unit(way: Classifiers, plan: Plan, examples: PairSamples, tracker: str, split: int) -> Unit:
-    """Learn from one split of a tracker's examples."""
+    """Return the unit that trains on one split of a tracker's samples."""
     key = (
         f"learn {','.join(way.features)} by {way.most} | {len(examples)} pairs of {TRACKERS[tracker].key}, "
         f"{plan.rounds} rounds | {split}"
@@ -128,29 +128,29 @@ def learn_unit(way: Classifiers, plan: Plan, examples: PairSamples, tracker: str
 
 
 def measure_pairs(scenario: str, seed: int, setting: TrackerSetting) -> Result:
-    """Run a tracker through a scenario, and keep what it measured of people who overlap."""
+    """Run a tracker on a scenario, and return its measurements of people who overlap."""
     return collect_pairs(scenario, seed, setting.config()).to_plain()
 
 
 def learn_pairs(
     features: tuple[str, ...], most: int, rounds: int, split: int, examples: PairSamples
 ) -> Result:
-    """Learn from examples that are split at random, and scenario by scenario, and test on the rest.
+    """Train on samples that are split at random, and by scenario, and test on the rest.
 
-    Features that are 0 in all examples to learn from tell nothing: half of all answers are right then.
+    Features that are 0 in all training samples have no information: half of all answers are correct then.
 
     Source: thesis, section 7.4.
 
     Args:
-        features: names of those that are used.
-        most: how many of them a weak classifier may add up.
-        rounds: of boosting; a single feature is one weak classifier, and boosting has nothing to add to it.
-        split: number of the splits, from 0.
-        examples: to split.
+        features: names of the features.
+        most: maximum number of features in a weak classifier.
+        rounds: rounds of boosting; a single feature is one weak classifier, which boosting cannot improve.
+        split: number of the split, from 0.
+        examples: samples to split.
 
     Returns:
-        The share of right answers [%] by the names of `TESTS`, and the weights of the "best" classifiers,
-        which are learned from the random split.
+        The share of correct answers [%] by the names of `TESTS`, and the weights of the "best" classifiers,
+        which are trained on the random split.
     """
     if len(examples) < LEAST:
         return dict.fromkeys(TESTS, math.nan) | {"best": []}
@@ -170,9 +170,9 @@ def learn_pairs(
 
 
 def random_split(examples: PairSamples, rng: np.random.Generator) -> Split[PairSamples]:
-    """Draw as many pairs as the thesis has, and learn from 60 % of them.
+    """Return a random split: as many pairs as in the thesis, 60 % of them for training.
 
-    The same occlusion may be on both sides.
+    The same occlusion may be in training and test.
 
     Source: thesis, section 7.4.
     """
@@ -182,9 +182,9 @@ def random_split(examples: PairSamples, rng: np.random.Generator) -> Split[PairS
 
 
 def split_by_scenario(examples: PairSamples, rng: np.random.Generator) -> Split[PairSamples]:
-    """Draw scenarios until they have 60 % of the pairs, learn from these, and test with the others.
+    """Return a split by scenario: random scenarios with 60 % of the pairs for training, the rest for the test.
 
-    One is left to test with, unless there is but one, even if the others have less.
+    At least one scenario is kept for the test, unless there is only one.
     """
     names = np.unique(examples.scenario)
     is_learned = np.zeros(len(examples), np.bool_)

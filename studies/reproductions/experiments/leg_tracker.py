@@ -1,4 +1,4 @@
-"""A tracker of legs by a laser near the floor, of the kind that was usual before depth cameras."""
+"""Track legs with a laser scanner near the floor, as was usual before depth cameras."""
 
 import math
 from collections.abc import Iterator
@@ -11,11 +11,11 @@ from peopleboy.sim.observation import Observation
 from peopleboy.tracker.frame import Floats, Odometry
 
 HEIGHT_M: Final = 0.3
-FARTHEST_M: Final = 5.0  # SA 4.7.7: legs are separated from other things up to 3 to 5 m
+FARTHEST_M: Final = 5.0  # SA 4.7.7: legs are distinguished from other objects up to 3 to 5 m
 FORWARD_M: Final = 0.3
 
 _COLUMNS, _ROWS = 361, 16
-_FOV_DEG: Final = math.degrees(2.0 * math.atan(_ROWS / _COLUMNS))  # upright; it is 90 degrees across
+_FOV_DEG: Final = math.degrees(2.0 * math.atan(_ROWS / _COLUMNS))  # portrait format; 90 degrees across
 _YAWS_DEG: Final = {"legs_left": 45.0, "legs_right": -45.0}
 
 CAMERAS: Final = {
@@ -32,7 +32,7 @@ CAMERAS: Final = {
     }
     for name, yaw_deg in _YAWS_DEG.items()
 }
-"""Two depth cameras without noise, one row of which makes half a circle."""
+"""Two noise-free depth cameras, one row of which forms a scan of half a circle."""
 
 _GAP_M: Final = 0.12  # between neighbours of different objects
 _LEG_M: Final = (0.05, 0.25)
@@ -55,7 +55,7 @@ def scan(observation: Observation) -> Floats:
 
 
 def find_people(points: Floats) -> list[tuple[float, float]]:
-    """Take pairs of segments as wide as a leg, and single ones, for people."""
+    """Return people from pairs of segments as wide as a leg, and from single segments."""
     legs = list(_legs(points))
     people = []
     while legs:
@@ -70,7 +70,7 @@ def find_people(points: Floats) -> list[tuple[float, float]]:
 
 @dataclass(frozen=True, slots=True)
 class LegTrack:
-    """A person followed by the legs: place, frames in which it was seen, and frames since."""
+    """A person tracked by legs: position, number of detections, and frames since the last one."""
 
     id: int
     place_m: tuple[float, float]
@@ -79,14 +79,14 @@ class LegTrack:
 
 
 class LegTracker:
-    """Follows legs from frame to frame: the nearest detection continues a track."""
+    """Tracks legs from frame to frame: the nearest detection continues a track."""
 
     def __init__(self) -> None:
         self._tracks: list[LegTrack] = []
         self._last_id = 0
 
     def update(self, points: Floats, odometry: Odometry | None) -> list[LegTrack]:
-        """Take in a scan, and give the tracks that were seen often enough."""
+        """Update the tracks with a scan, and return the confirmed ones."""
         found = find_people(points)
         kept = []
         for track in sorted((_predicted(one, odometry) for one in self._tracks), key=lambda one: -one.seen):
@@ -104,7 +104,7 @@ class LegTracker:
 
 
 def _legs(points: Floats) -> Iterator[tuple[float, float]]:
-    """Find segments of the scan that stand before their neighbours and are as wide as legs."""
+    """Return segments of the scan that are in front of their neighbours and as wide as legs."""
     reach = np.hypot(*points.T)
     for first, last in _segments(points):
         segment = points[first : last + 1]
@@ -116,7 +116,7 @@ def _legs(points: Floats) -> Iterator[tuple[float, float]]:
 
 def _segments(points: Floats) -> Iterator[tuple[int, int]]:
     gaps = np.hypot(*np.diff(points, axis=0).T)
-    breaks = np.flatnonzero(~(gaps <= _GAP_M))  # no reading is a break, too
+    breaks = np.flatnonzero(~(gaps <= _GAP_M))  # a missing reading also separates segments
     starts, ends = [0, *(breaks + 1).tolist()], [*breaks.tolist(), len(points) - 1]
     for first, last in zip(starts, ends, strict=True):
         if np.isfinite(points[first : last + 1]).all():
@@ -131,7 +131,7 @@ def _stands_out(reach: Floats, first: int, last: int) -> bool:
 
 
 def _predicted(track: LegTrack, odometry: Odometry | None) -> LegTrack:
-    """Express a track's place in the robot's new frame."""
+    """Transform a track's position to the robot's new frame."""
     if odometry is None:
         return track
     return replace(track, place_m=odometry.motion.to_local(track.place_m))

@@ -1,4 +1,4 @@
-"""Experiments of the 2003 paper: errors of distances, angles and positions by panorama, and of webcams."""
+"""Experiments of the 2003 paper: errors of distance, angle and position by panorama, and by webcams."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
@@ -41,12 +41,12 @@ _WEBCAMS: Final = {
 def distances(
     using: Measurement, *, groups: Mapping[str, Mapping[str, Any]], has_new_people: bool = False
 ) -> Samples:
-    """Measure errors [m] in every room, by both kinds of splits, its runs taken together.
+    """Measure errors [m] in every room, by both kinds of splits, with its runs combined.
 
     Args:
-        using: how much is measured, and what is there.
-        groups: whose `errors` are meant, such as "general", and of which `split`: "best", "worst" or all.
-        has_new_people: whether networks are tested on people who are new to them, in the first group.
+        using: the plan and stored results.
+        groups: the `errors`, such as "general", and the `split`: "best", "worst" or all.
+        has_new_people: whether the first group includes tests on new people.
     """
     walks = walks_of(using)
     units = {
@@ -77,7 +77,7 @@ def _errors(plain: Mapping[str, Any], errors: Sequence[str], split: str = "all")
 
 
 def correlations(using: Measurement) -> Samples:
-    """Correlate features and the network's answer with the distance, one value a run (figure 5)."""
+    """Correlate features and the network's estimate with the distance, one value per run (figure 5)."""
     walks = walks_of(using)
     tested = using.grouped({room: _split_units(using, room, "random", walks[room]) for room in ROOMS})
     r = {room: np.abs([result["r"] for result in results]) for room, results in tested.items()}
@@ -85,7 +85,7 @@ def correlations(using: Measurement) -> Samples:
 
 
 def webcams(using: Measurement) -> Samples:
-    """Measure errors of places [cm] by webcams, and of the bearing from the robot [deg], one value a seed."""
+    """Measure position errors by webcams [cm] and bearing errors [deg], one value per seed."""
     found = _webcam_runs(using)
     return {
         Line(group, "default"): {
@@ -115,13 +115,13 @@ def _webcam_runs(using: Measurement) -> list[Result]:
 
 
 def walks_of(using: Measurement) -> dict[str, list[DistanceSamples]]:
-    """Return by room what the panoramic camera measured of people who walk there, run by run."""
+    """Return by room the panoramic camera's measurements of walking people, run by run."""
     found = using.played(measure_walk, ROOMS, using.plan.walks)
     return {room: list(map(DistanceSamples.from_plain, runs)) for room, runs in found.items()}
 
 
 def measure_walk(room: str, seed: int) -> Result:
-    """Run people through a room, and keep what is measured of them."""
+    """Return the unit that simulates walking people in a room, and measures them."""
     return collect_distances(room, seed).to_plain()
 
 

@@ -1,4 +1,4 @@
-"""Scenarios played for trackers and models that are compared: the same frames for each, and the truth."""
+"""Play scenarios for compared trackers and models: equal frames for all, with ground truth."""
 
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -25,9 +25,9 @@ class Moment:
 
     Attributes:
         number: of the camera's image, from 1.
-        frame: what a tracker is given.
-        truth: in the camera's image.
-        observation: all that the robot sensed.
+        frame: input of a tracker.
+        truth: ground truth in the camera's image.
+        observation: all sensor data of the robot.
     """
 
     number: int
@@ -42,12 +42,12 @@ def play(
     """Play a scenario whose robot drives without a tracker, and yield the instants with a camera's image.
 
     Args:
-        scenario: what is played.
-        seed: of the run.
-        camera: in whose image the truth is.
-        images: names of those that are rendered before a frame is handed on. An image is rendered when it is
-            first read, and that must not count as the tracker's time.
-        every: interval between the images that are handed on, from the first on.
+        scenario: the scenario.
+        seed: seed of the run.
+        camera: camera of the ground truth.
+        images: names of images to render before a frame is yielded. An image is rendered when it is first
+            read, and that must not count as the tracker's time.
+        every: interval between yielded images, starting with the first.
 
     Raises:
         BadInput: the robot needs a tracker to drive.
@@ -68,18 +68,18 @@ def play(
 
 
 def unbroken(numbers: NDArray[Any] | Sequence[int], gap: int = 1) -> list[NDArray[np.int64]]:
-    """Split ascending numbers (N,) where the step is larger than the gap; return the places in each part."""
+    """Split ascending numbers (N,) at steps larger than the gap; return the indices of each part."""
     return np.split(np.arange(len(numbers)), np.flatnonzero(np.diff(numbers) > gap) + 1)
 
 
 @dataclass(slots=True)
 class Stopwatch:
-    """Processor time [ms] of the work that it is given."""
+    """Measures processor times [ms]."""
 
     times_ms: list[float] = field(default_factory=list)
 
     def __call__(self, work: Callable[[], Result]) -> Result:
-        """Do some work, and keep its time."""
+        """Call a function, and record its time."""
         start = time.process_time()
         result = work()
         self.times_ms.append(1000.0 * (time.process_time() - start))
@@ -87,5 +87,5 @@ class Stopwatch:
 
     @property
     def median_ms(self) -> float:
-        """The median [ms]."""
+        """Median time [ms]."""
         return float(np.median(self.times_ms))

@@ -1,4 +1,4 @@
-"""Scene models on recordings in which objects are moved: backgrounds, masks and events against the truth."""
+"""Score scene models on sequences with moved objects: backgrounds, masks and events."""
 
 import base64
 from collections.abc import Callable, Mapping, Sequence
@@ -35,30 +35,30 @@ Bools = NDArray[np.bool_]
 Floats = NDArray[np.float32]
 
 TOF: Final = PRESETS[0]
-"""The depth camera that all models watch; what others record is watched by those that are worth it."""
+"""Depth camera of all models; the best models also run on other cameras."""
 CHAIRS: Final = ("s2r1", "s2r2")
-"""Sequences whose thin legs no sensor of these sees well."""
+"""Sequences with chairs, whose thin legs no depth sensor resolves well."""
 SHOWN: Final = ("s1r1", "s2r1", "s3r1", "s4r1", "s5r1", "s6r1")
-"""Sequences of which the backgrounds of seed 0 are kept."""
+"""Sequences of which the backgrounds of seed 0 are stored."""
 ALL: Final = "all"
 
 MEAN, MPIX, TRACK, ADAPT = "MEAN", "MPIX", "TRACK", "ADAPT"
-"""As printed."""
+"""Models as printed."""
 ROBUST, NO_HEAT = "robust", "robust, without heat"
-"""Ours, and ours without the thermal image."""
+"""PeopleBoy's own model, with and without the thermal image."""
 PRINTED: Final = (MEAN, MPIX, TRACK, ADAPT)
 OURS: Final = (ROBUST, NO_HEAT)
 
 EVERY: Final = 5
 """Interval between the frames whose masks are compared."""
 LEAST_M: Final = 0.12
-"""[m] before the background from which on an object is to be found."""
+"""Minimum distance [m] of an object in front of the background."""
 EVER, CLEAN = "ever", "clean"
-_FARTHEST_M: Final = 65.0  # of a map; 16 bits hold 65.5 m in millimetres
+_FARTHEST_M: Final = 65.0  # limit of a map: 16 bits hold 65.5 m in millimetres
 
 
 def static_scenes(using: Measurement) -> Samples:
-    """Measure how far each model's static scene is from the truth, sequence by sequence (table 3.1)."""
+    """Measure the error of each model's static scene, sequence by sequence (table 3.1)."""
     scenes = using.plan.scenes
     found = using.played(watch_scene, scenes, using.plan.scene_seeds, TOF)
     return {
@@ -75,7 +75,7 @@ def static_scenes(using: Measurement) -> Samples:
 
 
 def scene_models(using: Measurement) -> Samples:
-    """Score background, objects, people and events by depth camera, chairs by themselves."""
+    """Score background, objects, people and events by depth camera, chairs separately."""
     plan, result = using.plan, {}
     using.results(
         Unit.of(watch_scene, name, seed, preset)
@@ -94,7 +94,7 @@ def scene_models(using: Measurement) -> Samples:
 
 
 def _scene_scores(runs: Sequence[Result], model: str) -> Row:
-    """Return a model's scores; what is counted is counted in all runs together."""
+    """Return a model's scores; counts are summed over all runs."""
     own = [run[model] for run in runs]
     events = {name: sum(run["events"][name] for run in own) for name in own[0]["events"]}
     people, things = (np.sum([run[kind] for run in own], axis=0) for kind in ("people", "things"))
@@ -116,19 +116,19 @@ def _scene_scores(runs: Sequence[Result], model: str) -> Row:
 
 
 def make_model(name: str) -> SceneModel | PrintedSceneModel:
-    """Make a scene model that is compared: one of `PRINTED` or `OURS`."""
+    """Create a scene model, one of `PRINTED` or `OURS`."""
     if name in PRINTED:
         return PrintedSceneModel(VARIANTS[name.lower()], stream(0, "scene.particles"))
     return SceneModel(SceneConfig(people=PeopleMaskConfig(has_heat=name != NO_HEAT)))
 
 
 def with_preset(scenario: Scenario, preset: str) -> Scenario:
-    """Return the robot a depth camera by the name of its preset."""
+    """Return a robot with a depth camera of a preset."""
     return scenario.with_cameras({DEPTH: {"kind": DEPTH, "preset": preset}})
 
 
 class _Watcher:
-    """One model, what it found, its score and its time."""
+    """A scene model with its results, score and time."""
 
     def __init__(self, name: str) -> None:
         self._model = make_model(name)
@@ -149,9 +149,9 @@ class _Watcher:
     def plain(
         self, true: Mapping[str, Metres], lengths: Floats, events: Sequence[TrueEvent], robot: Pose2
     ) -> dict[str, Any]:
-        """Finish, and give errors, pixels, events and time as plain data."""
+        """Finish, and return errors, pixels, events and time as plain data."""
         self.happenings += self._model.finish()
-        assert self.scene is not None  # there was a frame
+        assert self.scene is not None  # at least one frame was processed
         background = self.scene.background_m
         return {
             **{name: background_errors(background, depth, lengths) for name, depth in true.items()},
@@ -162,10 +162,10 @@ class _Watcher:
 
 
 def watch_scene(sequence: str, seed: int, preset: str) -> Result:
-    """Play one of `SEQUENCES` before a depth camera once, and let models see it.
+    """Play one of `SEQUENCES` once for a depth camera, and run models on it.
 
     Returns:
-        Plain data by the model's name: errors of its background, against what was ever shown, and against the
+        Plain data by the model's name: errors of its background, relative to what was ever visible, and to the
         place without people and objects; pixels, events, and milliseconds. With seed 0 of `SHOWN` sequences
         also "maps", the backgrounds.
 
@@ -199,8 +199,8 @@ def _new_events(log: ThingLog, truth: Truth) -> list[TrueEvent]:
 
 
 def _true_masks(truth: Truth, backgrounds: Backgrounds, frame: Frame) -> dict[str, Bools]:
-    """Return where (H, W) people, and movable things clear of the background, are read by the camera."""
-    assert backgrounds.ever is not None  # it has taken in this truth
+    """Return masks (H, W) of people, and of movable objects in front of the background, in depth."""
+    assert backgrounds.ever is not None  # the visible background includes this frame
     is_thing = truth.owners.mask(*(thing.name for thing in truth.things))
     stands_clear = backgrounds.ever - truth.depth_m > LEAST_M
     is_read = frame.depth(DEPTH) > 0
@@ -208,21 +208,21 @@ def _true_masks(truth: Truth, backgrounds: Backgrounds, frame: Frame) -> dict[st
 
 
 def count_pixels(found: Bools, wanted: Bools) -> NDArray[np.int64]:
-    """Count (3,) right, false and missed pixels."""
+    """Return the numbers (3,) of correct, false and missed pixels."""
     right = int(np.count_nonzero(found & wanted))
     return np.array([right, np.count_nonzero(found) - right, np.count_nonzero(wanted) - right])
 
 
 def background_errors(found_m: Metres, true_m: Metres, lengths: Floats) -> dict[str, float]:
-    """Compare a background (H, W) [m] with the truth, which is infinite where there is nothing.
+    """Compare a background (H, W) [m] with ground truth, which is infinite without a surface.
 
     Args:
-        found_m: 0 where nothing is known.
+        found_m: estimated depth; 0 where unknown.
         true_m: depth along the optical axis.
         lengths: (H, W) length of each pixel's ray of depth 1.
 
     Returns:
-        Distance of the points [mm]: mean, deviation and median; and the share of pixels that are known.
+        Distance of the points [mm]: mean, deviation and median; and the share of known pixels.
     """
     is_known = (found_m > 0.0) & np.isfinite(true_m)
     off = 1000.0 * np.abs(found_m - true_m)[is_known] * lengths[is_known]
@@ -235,10 +235,10 @@ def background_errors(found_m: Metres, true_m: Metres, lengths: Floats) -> dict[
 def event_counts(
     happenings: Sequence[Happening], events: Sequence[TrueEvent], identities: PersonNames, first: Pose2
 ) -> dict[str, int]:
-    """Count right and false events, true events and those that were found, and the people who caused them.
+    """Count correct and false detected events, true and found events, and the people who caused them.
 
-    A happening is right if there was an event there then; an event is found if there is such a happening. Its
-    person counts where a person caused it, and it was found.
+    A detected event is correct if a true event matches it in time and place, and that event counts as found.
+    The person is scored if a person caused the event, and it was found.
     """
     found = matching(happenings, events, first)
     predicted = {n: k for k, numbers in sorted(found.items(), reverse=True) for n in numbers}

@@ -1,4 +1,4 @@
-"""What a tracker does on one sequence of a data set, as plain data: its metrics and its delay."""
+"""Measure metrics and detection delay of a tracker on one sequence of a data set, as plain data."""
 
 import math
 from collections.abc import Iterator
@@ -32,26 +32,26 @@ Flags = NDArray[np.bool_]
 
 RECORDS: dict[str, type[Sums]] = {"counts": Counts, "thesis": ThesisMetrics, "paper": PaperMetrics}
 
-PATIENCE: Final = 30  # frames after which a tracker has not found the person
-EVERY: Final = 15  # frames between two starts
-PLAIN: Final = 0.9  # visible fraction from which a person is in plain view
+PATIENCE: Final = 30  # frames after which a person counts as not found
+EVERY: Final = 15  # frames between two starts of the tracker
+PLAIN: Final = 0.9  # minimum visible fraction of a clearly visible person
 
 USUAL, STRICT, OWN_RANGE, HALF = "usual", "strict", "strict, own range", "half in view"
 NEAR, FAR, RANGE = "strict, near aside", "strict, far aside", "strict, near and far aside"
 FOUND: Final = "once found"
-"""Ways to deal with people whom the sources do not count, and with causes of errors.
+"""Counting rules for people whom the sources do not count, and for causes of errors.
 
-Usually a box on somebody who is not counted is neither right nor wrong. Strictly, people who are not counted
-or wholly hidden are not there. "own range": nor are tracks that the tracker itself places where they are.
-"near aside" sets aside boxes on people nearer than the sources count, "far aside" on those farther, by the
-truth's distance. "half in view" sets aside people less than half in view, and boxes on them; "once found"
-people until they are first found.
+Usually a box on a person who is not counted is neither correct nor wrong. In strict rules, people who are not
+counted or wholly hidden are absent. "own range" also removes tracks that the tracker itself places outside
+the counted range. "near aside" ignores boxes on people nearer than the counted range, "far aside" on those
+farther away, by the true distance. "half in view" ignores people less than half in view, and boxes on them;
+"once found" ignores people until they are first found.
 """
-STRETCH: Final = 15  # frames without a person after which it is a new one, who has yet to be found
+STRETCH: Final = 15  # after this many frames of absence, a person must be found again
 
 
 def count_sequence(run: SuiteRun, cache: Path) -> Result:
-    """Render a run's frames into the cache, unless they are there, and count as in the thesis's table 3.1."""
+    """Render a run's frames to the cache if necessary, and count as in the thesis's table 3.1."""
     shot = film(run.scenario, run.seed, cache)
     times = [frame.time_s for frame in islice(frames_of(shot, ()), 2)]
     rate_hz = 1.0 / (times[1] - times[0]) if len(times) == 2 else 15.0
@@ -59,7 +59,7 @@ def count_sequence(run: SuiteRun, cache: Path) -> Result:
 
 
 def score_sequence(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int) -> Result:
-    """Track a sequence with the repeat's random stream, and score it by each way to count."""
+    """Track a sequence with the repeat's random stream, and score it by each counting rule."""
     shot = film(run.scenario, run.seed, cache)
     found, is_in_range = track_sequence(shot, setting.make(stream(repeat, "reproduce.tracker")))
     people, truth = shot.people(), shot.truth()
@@ -77,12 +77,12 @@ def score_sequence(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: 
 def truth_by_way(
     truth: TrueBoxes, distance_m: NDArray[np.float64], found: TrackBoxes
 ) -> dict[str, TrueBoxes]:
-    """Return the truth for each way to count: rows left out are not there, uncounted rows are set aside.
+    """Return ground truth for each counting rule: omitted rows are absent, uncounted rows are ignored.
 
     Args:
-        truth: of a sequence.
-        distance_m: (N,) of each of its rows from the camera on the floor.
-        found: what a tracker found there.
+        truth: ground truth of a sequence.
+        distance_m: (N,) floor distance of each row from the camera.
+        found: boxes of a tracker.
     """
     is_target = counts(truth.counted, truth.visible)
     usual = replace(truth, counted=is_target)
@@ -103,7 +103,7 @@ def track_sequence(shot: Film, tracker: Tracker) -> tuple[TrackBoxes, Flags]:
     """Run a tracker on a sequence; tentative tracks do not count.
 
     Returns:
-        What it found, and (N,) whether the tracker itself places it where the sources count people.
+        Its boxes, and (N,) whether the tracker places them in the range in which the sources count people.
     """
     rows = [
         (number, track.id, box, track.confidence, _is_in_range(track, frame))
@@ -122,11 +122,11 @@ def _is_in_range(track: Track, frame: Frame) -> bool:
 
 
 def measure_delay(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int) -> Result:
-    """Start a tracker many times in one sequence, each time while a person is in plain view.
+    """Start a tracker many times in one sequence, each time while a person is clearly visible.
 
     Returns:
-        How many "starts" there were, and the frames "needed" by each that found the person, the one of the
-        start included.
+        The number of "starts", and the frames "needed" by each start that found the person, including the
+        first frame.
     """
     shot = film(run.scenario, run.seed, cache)
     truth = shot.truth()
@@ -149,7 +149,7 @@ def measure_delay(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: i
 
 
 def plain_starts(truth: TrueBoxes) -> Iterator[int]:
-    """Yield frames from which on exactly one person is there, counted and in plain view, for long enough."""
+    """Yield frames from which exactly one person is present, counted and clearly visible, for long enough."""
     people = np.bincount(truth.frame, minlength=truth.last_frame + 1)
     plain = np.bincount(truth.frame[truth.counted & (truth.visible > PLAIN)], minlength=len(people))
     is_plain = (people == 1) & (plain == 1)
@@ -161,7 +161,7 @@ def plain_starts(truth: TrueBoxes) -> Iterator[int]:
 
 
 def not_yet_found(truth: TrueBoxes, found: TrackBoxes) -> Flags:
-    """Return which rows (N,) are of counted people who have come into view and have not been found since."""
+    """Return which rows (N,) are of counted people who have appeared and have not yet been found."""
     targets = truth.take(truth.counted)
     pairs = pair_up(targets, found)
     is_hit = np.zeros(len(targets), dtype=np.bool_)

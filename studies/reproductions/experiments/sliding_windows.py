@@ -1,4 +1,4 @@
-"""Windows that show people: slid over whole images, or on what has a human's size in depth; and parameters.
+"""Detect people in windows, sliding over images or placed by size in depth; and count parameters.
 
 Source: thesis on situation awareness, sections 4.4.2, 4.7.4 and 4.7.8.
 """
@@ -45,21 +45,21 @@ Floats = NDArray[np.float64]
 BY_SIZE: Final = "pre-detection + verification"
 PARTS: Final = ("pre-detection", "verification", "hypotheses and filters")
 
-_OVERLAP: Final = 0.4  # of a window with that of a person whom it found
-_DOUBLE: Final = 0.4  # overlap from which the weaker one of two windows is suppressed
-_HIDDEN: Final = 0.5  # share from which a person need not be found
-_TORSO_M, _FRONT_M = 0.45, 0.1  # width of a body, and from its middle to the surface that is seen
+_OVERLAP: Final = 0.4  # of a window with that of a found person
+_DOUBLE: Final = 0.4  # minimum overlap at which the weaker one of two windows is suppressed
+_HIDDEN: Final = 0.5  # hidden share above which a person need not be found
+_TORSO_M, _FRONT_M = 0.45, 0.1  # width of a body, and distance from its centre to the visible surface
 
 
 @dataclass(frozen=True, slots=True)
 class Slide:
-    """How windows slide over an image.
+    """Parameters of sliding windows.
 
     Attributes:
-        kind: of windows.
-        shift_px: from one to the next.
-        scale: by which the image shrinks from step to step.
-        is_opencv: whether OpenCV's people detector judges them, or the tracker's own machine.
+        kind: kind of the windows.
+        shift_px: shift between windows.
+        scale: factor by which the image shrinks from step to step.
+        is_opencv: whether OpenCV's people detector classifies them, or the tracker's own classifier.
     """
 
     kind: WindowRange
@@ -69,12 +69,12 @@ class Slide:
 
     @property
     def name(self) -> str:
-        """Shift and scale as tables have them."""
+        """Shift and scale, as in tables."""
         return f"{self.shift_px} px, scale {self.scale:.2f}"
 
     @property
     def key(self) -> str:
-        """All that it is, in words."""
+        """All parameters as text."""
         return f"{self.kind} {self.name}{' by OpenCV' if self.is_opencv else ''}"
 
 
@@ -94,7 +94,7 @@ NEAR_SLIDES: Final = tuple(
 OWN, COLOUR, OPENCV = "own machine", "own machine, colour alone", "OpenCV's detector"
 NEAR, FAR = str(WindowRange.NEAR), str(WindowRange.FAR)
 MODELS: Final = ((FAR, OWN), (FAR, COLOUR), (FAR, OPENCV), (NEAR, OWN), (NEAR, COLOUR))
-"""Ranges, and who judges windows there."""
+"""Ranges, and the classifiers of their windows."""
 BOTH: Final = f"{NEAR}+{FAR} {BY_SIZE}"
 _SLID: Final = (6, 7, 11)  # numbers of the sets whose images are searched
 
@@ -102,7 +102,7 @@ _Window = tuple[WindowRange, Sequence[float]]
 
 
 def loop_times(using: Measurement) -> Samples:
-    """Time a frame without pre-detection and with it [ms] (table 4.2)."""
+    """Time a frame with and without pre-detection [ms] (table 4.2)."""
     found = _slid(using)
     rest = found["parts"]["hypotheses and filters"]
     slid, by_size = found["far 8 px, scale 1.10"]["ms"], found[BOTH]["ms"]
@@ -128,7 +128,7 @@ def sliding_windows(using: Measurement, *, window: str) -> Samples:
 
 
 def windows_by_size(using: Measurement) -> Samples:
-    """Measure times and rate of windows on what has a person's size (table 4.5)."""
+    """Measure times and rate of windows on regions of a person's size (table 4.5)."""
     found = _slid(using)
     parts = {name: {"ms": found["parts"][name]} for name in ("pre-detection", "verification")}
     rows = {**parts, "total": _tallied(found[BOTH])}
@@ -136,10 +136,10 @@ def windows_by_size(using: Measurement) -> Samples:
 
 
 def parameters(using: Measurement) -> Samples:  # noqa: ARG001
-    """Count the settings that must be chosen, switches left out (table 4.7)."""
+    """Count the parameters that must be chosen, without switches (table 4.7)."""
     counts = {
         "pre-detection": _numbers(HumanSize) + _numbers(UDepthConfig),
-        "classification": 2,  # a score for either range
+        "classification": 2,  # one score per range
         "hypotheses": _numbers(HypothesesConfig),
         "tracking": _numbers(FloorFilterConfig),
     }
@@ -148,7 +148,7 @@ def parameters(using: Measurement) -> Samples:  # noqa: ARG001
 
 
 def window_models(using: Measurement) -> Samples:
-    """Measure recall and false alarms of window classifiers in places that none learned from."""
+    """Measure recall and false positives of window classifiers in places outside their training sets."""
     runs = [(name, seed) for name, count in VALIDATION.items() if name for seed in range(count)]
     runs = runs[:1] if using.plan.is_quick else runs
     scores = using.results(Unit.of(score_windows, name, seed) for name, seed in runs)
@@ -171,7 +171,7 @@ def _judged(scores: Sequence[Mapping[str, Sequence[float]]]) -> Row:
 
 
 def _slid(using: Measurement) -> Result:
-    """Search the same images in all ways; times are exact only where a unit runs alone."""
+    """Search the same images with all methods; times are exact only if a unit runs alone."""
     plan = using.plan
     names, every = tuple(SETS[n - 1] for n in plan.sets if n in _SLID), 30 if plan.is_quick else 10
     (found,) = using.results([Unit.of(compare_windows, names, plan.drive_s, every, is_timing=True)])
@@ -194,7 +194,7 @@ def _numbers(config: type[Any]) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Sought:
-    """Windows that a person should be in, by range; in which range the person is; whether in plain view."""
+    """Windows that a person should be in, by range; range of the person; whether clearly visible."""
 
     windows: Mapping[WindowRange, Box]
     kind: WindowRange
@@ -203,7 +203,7 @@ class _Sought:
 
 @dataclass(slots=True, eq=False)
 class WindowTally:
-    """The result of a detector: times of images, people there, people found, and windows on nobody."""
+    """Results of a detector: times of images, people present, people found, and false positives."""
 
     timed: Stopwatch = field(default_factory=Stopwatch)
     people: int = 0
@@ -213,7 +213,7 @@ class WindowTally:
     def add(
         self, windows: Sequence[_Window], people: Sequence[_Sought], kinds: Sequence[WindowRange]
     ) -> None:
-        """Take in an image: what was found, and who is there; only people in some ranges must be found."""
+        """Add an image: detections, and people present; only people in some ranges must be found."""
         matches = [[_is_on(window, person) for window in windows] for person in people]
         wanted = [number for number, person in enumerate(people) if person.is_plain and person.kind in kinds]
         self.people += len(wanted)
@@ -221,21 +221,21 @@ class WindowTally:
         self.false += sum(not any(row[k] for row in matches) for k in range(len(windows)))
 
     def plain(self) -> dict[str, Any]:
-        """Return it as plain data."""
+        """Return the tally as plain data."""
         counts = {"people": self.people, "found": self.found, "false": self.false}
         return {"ms": self.timed.median_ms, "images": len(self.timed.times_ms)} | counts
 
 
 def compare_windows(scenarios: Sequence[str], most_s: float, every: int) -> Result:
-    """Look for people in the same images in all ways; times are those of one core.
+    """Detect people in the same images with all methods; times are those of one core.
 
     Args:
-        scenarios: whose drives are played, with seed 0.
-        most_s: length [s] at which they are cut.
-        every: so-manieth image of them.
+        scenarios: scenarios of the drives, with seed 0.
+        most_s: maximum length [s].
+        every: interval between images.
 
     Returns:
-        Plain data: a tally by the key of the slide, or `BY_SIZE` with the ranges of those who must be found;
+        Plain data: a tally by the key of the slide, or `BY_SIZE` with the ranges of people to be found;
         and "parts", the tracker's median times [ms].
     """
     comparison, threads = _Comparison(), cv2.getNumThreads()
@@ -249,7 +249,7 @@ def compare_windows(scenarios: Sequence[str], most_s: float, every: int) -> Resu
 
 
 def slide(image: Image, how: Slide) -> Floats:
-    """Find windows (N, 4) with people in an image; of those that overlap the best ones are kept."""
+    """Return windows (N, 4) with people in an image, after non-maximum suppression."""
     hog = cv2.HOGDescriptor(SIZES[how.kind], (16, 16), (8, 8), (8, 8), 9)
     machines = people_detector() if how.is_opencv else shipped_windows(sees_depth=False)
     hog.setSVMDetector(machines.weights[how.kind])
@@ -293,7 +293,7 @@ class _Comparison:
         return tallies | {"parts": {name: part.median_ms for name, part in self.parts.items()}}
 
     def _search_by_size(self, frame: Frame, people: Sequence[_Sought], view: DepthView) -> float:
-        """Find windows as the tracker does; give the time that it took [ms]."""
+        """Detect windows as the tracker does; return them with the time [ms]."""
         detect, verify = (self.parts[name] for name in PARTS[:2])
         layout = detect(partial(self.detector, frame.depth(DEPTH), view))
         windows = verify(lambda: list(_verified(frame, layout, view)))
@@ -319,7 +319,7 @@ def _verified(frame: Frame, layout: Layout, view: DepthView) -> Iterator[_Window
 
 
 def _people(everybody: Sequence[FloorPerson], view: DepthView, shape: tuple[int, ...]) -> list[_Sought]:
-    """Place windows on everybody who is before the camera, by the truth."""
+    """Return windows on all people in front of the camera, from ground truth."""
     floor, found = HeightLine(view.horizon_px / view.focal_px, view.height_m), []
     for person in everybody:
         camera_m = view.calibration.position_m[0]
@@ -344,7 +344,7 @@ def _is_on(window: _Window, person: _Sought) -> bool:
 
 
 def score_windows(scenario: str, seed: int) -> Result:
-    """Collect windows of a scenario, and give the scores of people and others by range and classifier."""
+    """Collect windows of a scenario; return scores of people and others by range and classifier."""
     samples = collect_windows(scenario, seed, has_jitter=False)
     models = {
         OWN: shipped_windows(sees_depth=True),

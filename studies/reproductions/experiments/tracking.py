@@ -1,4 +1,4 @@
-"""Experiments in which trackers see the sequences of data sets, repeated with other random numbers."""
+"""Run trackers on the sequences of data sets, repeated with other random numbers."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, is_dataclass
@@ -27,10 +27,10 @@ RULES: Final = {
         *(scores.HALF, scores.FOUND),
     ),
 }
-"""Ways to count, by the name that declarations have for several of them."""
+"""Counting rules, by the name of their group in declarations."""
 BOXES, PEOPLE = "boxes aside [%]", "people aside [%]"
 _ASIDE: Final = {BOXES: "candidates", PEOPLE: "targets"}
-"""Columns that say how much a way to count sets aside, as a share of what strictly counts."""
+"""Columns with the share of strictly counted boxes or people that a counting rule ignores."""
 RATE_HZ: Final = 15
 
 CONTENTS: Final = {
@@ -44,9 +44,9 @@ CONTENTS: Final = {
 """Columns of the thesis's table 3.1."""
 
 Work = Callable[[SuiteRun, Path, TrackerSetting, int], Result]
-"""What a tracker does on a sequence, with a repeat's random stream."""
+"""Measures a tracker on a sequence, with a repeat's random stream."""
 Row = Callable[[Sequence[Result], str], Sequence[float]]
-"""Gives the columns of some sequences' results, counted by a rule."""
+"""Computes the columns from results of sequences, by a counting rule."""
 Record = TypeVar("Record", bound=Sums)
 
 
@@ -57,8 +57,8 @@ class TrackerTrial:
     Attributes:
         line: group and name.
         setting: the tracker.
-        suites: names of the data sets, taken together.
-        rule: which part of the results counts.
+        suites: names of the data sets, which are combined.
+        rule: the counting rule.
     """
 
     line: Line
@@ -81,14 +81,14 @@ def trials(
     """Yield the lines of a declaration, group by group, tracker by tracker, rule by rule.
 
     Args:
-        is_quick: whether time is short.
-        groups: a value of `sweep`, or what the group has otherwise: `suites`, `trackers`, `changes`.
+        is_quick: whether this is a quick run.
+        groups: a value of `sweep`, or overrides of the group: `suites`, `trackers`, `changes`.
         trackers: base by name, or `base` and `suites`.
         suites: names of the data sets, unless a group or tracker has its own.
-        sweep: settings that have a group's value, or how far each is from it.
-        rules: one of `RULES`; a tracker's name is followed by all but the usual way to count.
-        quick: groups that are tried when time is short; all if left out.
-        quick_changes: further changes of the trackers then.
+        sweep: settings that get the group's value, or their offsets from it.
+        rules: one of `RULES`; all but the usual counting rule are appended to a tracker's name.
+        quick: groups of a quick run; all if omitted.
+        quick_changes: further changes of the trackers in a quick run.
     """
     offsets = sweep if isinstance(sweep, Mapping) else dict.fromkeys(sweep, 0)
     for group, declared in groups.items():
@@ -123,9 +123,9 @@ def tracking(using: Measurement, *, metrics: str | Sequence[str], **declared: An
     """Score trackers by the thesis's or the paper's metrics [%].
 
     Args:
-        using: how much is measured, and what is there.
-        metrics: "thesis", "paper", or names; also those of shares that a way to count sets aside.
-        declared: as `trials` takes it.
+        using: the plan and stored results.
+        metrics: "thesis", "paper", or names, including those of shares that a counting rule ignores.
+        declared: arguments of `trials`.
     """
     names = METRICS[metrics] if isinstance(metrics, str) else tuple(metrics)
 
@@ -139,13 +139,13 @@ def tracking(using: Measurement, *, metrics: str | Sequence[str], **declared: An
 
 
 def _aside(results: Sequence[Result], rule: str, kind: str) -> float:
-    """Return which share of the boxes or people that strictly count is set aside [%]."""
+    """Return the share of strictly counted boxes or people that is ignored [%]."""
     counted, every = (sum(one[way]["counts"][kind] for one in results) for way in (rule, scores.STRICT))
     return float(100 * (1 - counted / max(every, 1)))
 
 
 def delay(using: Measurement, **declared: Any) -> Samples:
-    """Measure how many frames trackers need to find a person in plain view, once they are started."""
+    """Measure how many frames trackers need after their start to find a clearly visible person."""
 
     def row(results: Sequence[Result], _: str) -> list[float]:
         needed = [frames for result in results for frames in result["needed"]]
@@ -159,7 +159,7 @@ def delay(using: Measurement, **declared: Any) -> Samples:
 def _measured(
     using: Measurement, declared: Mapping[str, Any], work: Work, names: Sequence[str], row: Row
 ) -> Samples:
-    """Render the sequences, then run all trackers on them, and take each repeat's sequences together."""
+    """Render the sequences, run all trackers on them, and combine the sequences of each repeat."""
     plan = using.plan
     lines = list(trials(is_quick=plan.is_quick, **declared))
     using.results(count_unit(run, plan.cache) for trial in lines for run in plan.runs(trial.suites))
@@ -173,7 +173,7 @@ def _measured(
 def _values(
     repeats: Sequence[Sequence[Result]], trial: TrackerTrial, names: Sequence[str], row: Row
 ) -> dict[str, Values]:
-    """Return each column's value per repeat; of a single repeat also those without each sequence."""
+    """Return each column's value per repeat; for a single repeat, with leave-one-out values."""
     first, *others = repeats
     if others or len(first) == 1:
         return dict(zip(names, np.array([row(one, trial.rule) for one in repeats]).T, strict=True))
@@ -185,27 +185,27 @@ def _values(
 
 
 def count_unit(run: SuiteRun, cache: Path) -> Unit:
-    """Render a run and count what it holds."""
+    """Return the unit that renders a run and counts its content."""
     return Unit(f"film {_run_key(run)}", scores.count_sequence, (run, cache))
 
 
 def sequence_units(
     trial: TrackerTrial, plan: Plan, repeat: int, work: Work = scores.score_sequence
 ) -> list[Unit]:
-    """List a repeat's work of a trial: a tracker on each sequence, with one random stream."""
+    """Return a repeat's units of a trial: a tracker on each sequence, with one random stream."""
     return [sequence_unit(run, plan.cache, trial.setting, repeat, work) for run in plan.runs(trial.suites)]
 
 
 def sequence_unit(
     run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int, work: Work = scores.score_sequence
 ) -> Unit:
-    """Run a tracker on one sequence."""
+    """Return the unit that runs a tracker on one sequence."""
     key = f"{work.__name__} {_run_key(run)} | {setting.key} | {repeat}"
     return Unit(key, work, (run, cache, setting, repeat))
 
 
 def _run_key(run: SuiteRun) -> str:
-    """Name a run with its length, which is cut where there is little time."""
+    """Return the name of a run with its length, which is shorter in a quick run."""
     return f"{run.name} {run.scenario.duration_s:g}s"
 
 
@@ -220,12 +220,12 @@ def add_sums(results: Sequence[Result]) -> dict[str, Any]:
 
 
 def metric(sums: Mapping[str, Any], name: str) -> float:
-    """Read a metric off the sums [%]."""
+    """Return a metric [%] from the sums."""
     return float(getattr(sums["thesis" if name in THESIS else "paper"], name.lower()))
 
 
 def restored(kind: type[Record], data: Mapping[str, Any]) -> Record:
-    """Make a record of sums out of the plain data that `asdict` made of it."""
+    """Restore a record of sums from the plain data of `asdict`."""
     hints = get_type_hints(kind)
     nested = {
         field.name: restored(hints[field.name], data[field.name])

@@ -1,4 +1,4 @@
-"""Triangulation by webcams in the corners of a room (2003 paper, section 4), against the exact truth."""
+"""Triangulate people by webcams in the corners of a room (2003 paper, section 4), with ground truth."""
 
 import math
 from collections.abc import Sequence
@@ -24,28 +24,30 @@ from peopleboy.tracker.frame import PANORAMA
 from peopleboy.tracker.panoramic.paper.depth_cues import EMPTY_IMAGES, Background, learn_background, measure
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
 
-LEAST_ANGLE_RAD: Final = math.radians(10.0)  # between two lines of sight; flatter ones meet anywhere
+LEAST_ANGLE_RAD: Final = math.radians(
+    10.0
+)  # minimum between two lines of sight; flatter intersections are ill-conditioned
 X, Y, HEADING, RANGE = range(4)
-"""Columns of the webcams' numbers: x, y [m], heading and angle of view [rad], counter-clockwise."""
+"""Columns of the webcams' parameters: x, y [m], heading and angle of view [rad], counter-clockwise."""
 
 
 def bearings(columns: "Floats", webcams: "Floats", width: int) -> "Floats":
-    """Turn hats' columns (..., C) [px] into angles (..., C) [rad] in the room; NaN stays NaN.
+    """Convert hats' columns (..., C) [px] to angles (..., C) [rad] in the room; NaN stays NaN.
 
     Args:
         columns: one per webcam.
-        webcams: (C, 4).
-        width: of the images [px].
+        webcams: (C, 4) parameters.
+        width: width of the images [px].
     """
     focal = width / 2.0 / np.tan(webcams[:, RANGE] / 2.0)
     return np.asarray(webcams[:, HEADING] + np.arctan2((width - 1) / 2.0 - columns, focal))
 
 
 def triangulate(angles: "Floats", webcams: "Floats") -> "Floats":
-    """Find the places (T, 2) [m] that angles (T, C) [rad] point at; NaN where no two webcams do.
+    """Triangulate positions (T, 2) [m] from angles (T, C) [rad]; NaN with fewer than two webcams.
 
-    Every pair of webcams that sees the hat gives a point. The paper does not say how they are put together:
-    here by their mean, weighted by the squared sine of the angle at which their lines meet.
+    Every pair of webcams that sees the hat gives a point. The paper does not state how points are combined;
+    here it is their mean, weighted by the squared sine of the angle between their lines.
     """
     total, weight = np.zeros((len(angles), 2)), np.zeros(len(angles))
     for a, b in combinations(range(len(webcams)), 2):
@@ -64,13 +66,13 @@ def triangulate(angles: "Floats", webcams: "Floats") -> "Floats":
 
 
 def calibrate(columns: "Floats", known_m: "Floats", guess: "Floats", width: int) -> "Floats":
-    """Fit the 16 numbers of four webcams, (C, 4), to hats' columns (T, C) at known places (T, 2) [m].
+    """Fit the 16 parameters of four webcams, (C, 4), to hats' columns (T, C) at known positions (T, 2) [m].
 
-    Source: 2003 paper, section 4: the mean distance of the triangulated places from the known ones is made as
-    small as it can be; here that of their squares.
+    Source: 2003 paper, section 4, which minimises the mean distance of the triangulated positions from the
+    known ones; here it is the mean squared distance.
 
     Raises:
-        BadInput: a webcam never sees the hat, or there are fewer known places than the fit needs.
+        BadInput: a webcam never sees the hat, or there are fewer known positions than the fit needs.
     """
     for number, seen in enumerate(np.isfinite(columns).sum(axis=0)):
         if seen < len(guess[0]):
@@ -91,7 +93,7 @@ LEAST_PX: Final = 12
 
 
 def hat_column(image: NDArray[np.uint8]) -> float | None:
-    """Find the middle column [px] of the hat in an (H, W, 3) sRGB image; None if it is not seen whole."""
+    """Return the middle column [px] of the hat in an (H, W, 3) sRGB image; None if not fully visible."""
     hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV)
     low = np.array([HUES[0], LEAST_SATURATION, LEAST_VALUE])
     mask = cv2.inRange(hsv, low, np.array([HUES[1], 255, 255]))
@@ -113,23 +115,23 @@ SKEW_S: Final = 0.2
 RATE_HZ: Final = 3  # of the panorama
 _STILL_M_S: Final = 0.05
 _EARS: Final = slice(3, 5)  # of the 17 joints
-_GUESS_OFF: Final = (0.2, 0.2, math.radians(5.0), math.radians(3.0))  # of a webcam that was put up by hand
+_GUESS_OFF: Final = (0.2, 0.2, math.radians(5.0), math.radians(3.0))  # of a manually mounted webcam
 
 
 def measure_webcams(seed: int) -> dict[str, Any]:
-    """Play the scene, calibrate the webcams at known places, and measure.
+    """Play the scene, calibrate the webcams at known positions, and measure.
 
     Returns:
-        Plain data: mean distances [m] of the triangulated hat from its true place, the middle between the
-        ears, while the person stands "in_sample_m", at the known places, or at others, "new_m"; and while it
-        walks, seen by all webcams at once, "walking_m", or by one after the other within `SKEW_S`,
-        "skewed_m". Of these two also "bearing_deg" and "skewed_bearing_deg", mean errors [deg] of the bearing
+        Plain data: mean distances [m] of the triangulated hat from its true position, the middle between the
+        ears, while the person stands at the known positions, "in_sample_m", or at others, "new_m"; and while
+        the person walks, with simultaneous images, "walking_m", or images one after the other within
+        `SKEW_S`, "skewed_m". For these two also "bearing_deg" and "skewed_bearing_deg", mean errors [deg] of the bearing
         from the robot; and as "panorama_...", an `ErrorSummary` of the bearing [deg] of the silhouette in the
-        panorama, as the paper's tracker gives it, against the truth and against webcams "at_once", "skewed",
+        panorama, as measured by the paper's tracker, against ground truth and against webcams "at_once", "skewed",
         or "late" by `SKEW_S`.
 
     Raises:
-        BadInput: a webcam sees the hat too seldom; if the path shows it, before the scene is played.
+        BadInput: a webcam sees the hat too seldom; checked before the scene is played if possible.
     """
     scenario = load_scenario(SCENE)
     config = with_panorama(scenario.world(seed))
@@ -173,21 +175,21 @@ def measure_webcams(seed: int) -> dict[str, Any]:
 
 
 def with_panorama(config: WorldConfig) -> WorldConfig:
-    """Mount the panoramic camera, at the paper's rate, too."""
+    """Return the scenario with the panoramic camera, at the paper's rate."""
     cameras = {**config.robot.cameras, PANORAMA: PanoramaConfig(rate_hz=RATE_HZ)}
     return replace(config, robot=replace(config.robot, cameras=cameras))
 
 
 def webcam_names(config: WorldConfig) -> list[str]:
-    """Name the webcams of the scene."""
+    """Return the names of the webcams of the scene."""
     return [name for name in config.robot.cameras if name.startswith("webcam")]
 
 
 def check_views(webcams: Floats, places_m: Floats) -> None:
-    """Refuse webcams (C, 4) that look past the known places (T, 2) [m].
+    """Check that webcams (C, 4) cover the known positions (T, 2) [m].
 
     Raises:
-        BadInput: one has fewer of them in its field of view than its four numbers need.
+        BadInput: one has fewer of them in its field of view than its four parameters need.
     """
     for number, (x, y, heading, view) in enumerate(webcams.tolist(), 1):
         off = np.arctan2(places_m[:, 1] - y, places_m[:, 0] - x) - heading
@@ -202,8 +204,8 @@ def _shoot(
     """Play the scene.
 
     Returns:
-        (T, C) columns [px] of the hat in the webcams; (T, 2) where it is [m]; (T,) whether the person stands;
-        and (T,) the bearing in the room [rad] of the silhouette in the panorama, NaN where there is none.
+        (T, C) columns [px] of the hat in the webcams; (T, 2) its position [m]; (T,) whether the person
+        stands; and (T,) the bearing in the room [rad] of the silhouette in the panorama, NaN without one.
     """
     background = _empty_room(config)
     columns = np.full((frames, len(cameras)), np.nan)
@@ -225,19 +227,19 @@ def _shoot(
 
 
 def _empty_room(config: WorldConfig) -> Background:
-    """Learn the background without the person, who is in the scene from its start."""
+    """Learn the background from the scene without the person."""
     duration_s = EMPTY_IMAGES / RATE_HZ
     return learn_background([image for image, _ in panoramas(replace(config, people=()), duration_s)])
 
 
 def _seen(image: NDArray[np.uint8], background: Background, heading_rad: float) -> float:
-    """Return where in the room the silhouette is [rad]; NaN if there is none."""
+    """Return the bearing of the silhouette in the room [rad]; NaN without one."""
     figure = measure(background.silhouette(image), PanoramicConfig().least_px)
     return math.nan if figure is None else heading_rad + figure.bearing_rad
 
 
 def _standing(is_still: NDArray[np.bool_]) -> list[slice]:
-    """Find the spans in which the person stands for a second or more, the middle of each."""
+    """Return the middle of each span in which the person stands for a second or more."""
     edges = np.diff(np.concatenate([[0], is_still.astype(np.int8), [0]]))
     spans = zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True)
     return [slice(start + 4, end - 2) for start, end in spans if end - start >= 15 and end < len(is_still)]
@@ -255,7 +257,7 @@ def true_webcams(config: WorldConfig, cameras: Sequence[str]) -> Floats:
 
 
 def _delayed(columns: Floats, frames: Sequence[int]) -> Floats:
-    """Let each webcam's columns (T, C) come later by so many frames."""
+    """Delay each webcam's columns (T, C) by a number of frames."""
     late = columns.copy()
     for number, count in enumerate(frames):
         late[count:, number] = columns[: len(columns) - count, number]
@@ -263,7 +265,7 @@ def _delayed(columns: Floats, frames: Sequence[int]) -> Floats:
 
 
 def _bearing(places_m: Floats, robot_m: Floats) -> Floats:
-    """Return where places (T, 2) [m] are from the robot, (T,) [rad] in the room."""
+    """Return the bearings (T,) [rad] of positions (T, 2) [m] from the robot, in the room."""
     return np.asarray(np.arctan2(*(places_m - robot_m).T[::-1]), np.float64)
 
 
@@ -273,6 +275,6 @@ def _between(one_rad: Floats, other_rad: Floats) -> Floats:
 
 
 def _summary(seen_rad: Floats, places_m: Floats, robot_m: Floats) -> ErrorSummary:
-    """Sum up [deg] where both the panorama and the other measurement tell a bearing."""
+    """Summarise errors [deg] at times with a bearing of both the panorama and the other measurement."""
     off = _between(seen_rad, _bearing(places_m, robot_m))
     return ErrorSummary.of(off[np.isfinite(off)])

@@ -1,1 +1,1 @@
-"""The pictures of the 2003 paper on a panoramic camera, drawn again."""
+"""Pictures of the sources, drawn from simulated data."""

@@ -1,4 +1,4 @@
-"""Figures of the 2003 paper on a panoramic camera, and errors over the distance."""
+"""Draw the figures of the 2003 paper on a panoramic camera, and errors over the distance."""
 
 import math
 from collections.abc import Mapping
@@ -61,21 +61,21 @@ _RED: Final = "#d64541"
 _BODY, _PERSON = "#9aa3ad", "#cfd8c8"
 _PEOPLE: Final = (BLUE, ORANGE)
 _ROOMS: Final = (BLUE, ORANGE, "#66a61e")
-_SET_UP_S, _FEATURES_S, _WEBCAMS_S = 8.0, 12.0, 3.0  # when figures 1, 4 and 2 are taken
+_SET_UP_S, _FEATURES_S, _WEBCAMS_S = 8.0, 12.0, 3.0  # times of the images of figures 1, 4 and 2
 _FARTHEST_M: Final = 6.0
 _STEP_M: Final = 0.05  # of the floor plan
-_FRAGMENT: Final = slice(60, 110)  # of a clip's images: some 17 s
-_CLASS_M, _LEAST = 0.5, 30  # width of a class of distances, and images that it must have
+_FRAGMENT: Final = slice(60, 110)  # images of a clip: about 17 s
+_CLASS_M, _LEAST = 0.5, 30  # width of a bin of distances, and its minimum number of images
 
 
 def draw_set_up() -> Figure:
-    """Draw lens, mirror and lines of sight from the side, and the round image that the lens sees."""
+    """Draw lens, mirror and lines of sight from the side, and the round image of the lens."""
     page = canvas(2.5)
     side, close, raw = page.subplots(1, 3, gridspec_kw={"width_ratios": (1.6, 0.8, 1)})
     mirror = PanoramaConfig().camera.mirror
     _draw_side(side, mirror)
     _draw_mirror(close, mirror)
-    show_image(raw, _round_image(), "what the lens sees")
+    show_image(raw, _round_image(), "image of the lens")
     return page
 
 
@@ -98,7 +98,7 @@ def _draw_side(axes: Axes, mirror: Mirror) -> None:
 
 
 def _draw_mirror(axes: Axes, mirror: Mirror) -> None:
-    """Draw the cone over the lens, and how it turns the lens's rays outwards."""
+    """Draw the cone over the lens, and its reflection of the rays."""
     radius = 0.09
     top = mirror.apex_m + radius / math.tan(mirror.half_apex_rad)
     axes.add_patch(Polygon([(0.0, mirror.apex_m), (radius, top), (-radius, top)], color=BLUE, alpha=0.6))
@@ -114,7 +114,7 @@ def _draw_mirror(axes: Axes, mirror: Mirror) -> None:
 
 
 def _met(mirror: Mirror, angle: float) -> tuple[float, float]:
-    """Return where the ray that leaves the lens at an angle [rad] off its axis meets the mirror: x, y [m]."""
+    """Return the point x, y [m] where a ray at an angle [rad] from the lens axis meets the mirror."""
     # x = (y - lens) tan(angle) and x = (y - apex) tan(half apex)
     spread, side = math.tan(angle), math.tan(mirror.half_apex_rad)
     y = (mirror.apex_m * side - (mirror.apex_m - mirror.lens_m) * spread) / (side - spread)
@@ -129,7 +129,7 @@ def _round_image() -> Picture:
 
 
 def _images_after(config: WorldConfig, time_s: float) -> Mapping[str, Picture]:
-    """Return the images of a world whose robot stands, after some time [s]."""
+    """Return the images of a world with a standing robot after some time [s]."""
     from peopleboy.sim.world import SimulatedWorld  # here, as curves of stored results need no PyBullet
 
     with SimulatedWorld(config) as world:
@@ -139,7 +139,7 @@ def _images_after(config: WorldConfig, time_s: float) -> Mapping[str, Picture]:
 
 
 def draw_features() -> Figure:
-    """Film the beginning of a scenario; draw a panorama, what differs from the background, and the cues."""
+    """Run the start of a scenario; draw a panorama, the difference from the background, and the cues."""
     scenario = load_scenario(ROOM)
     images = [image for image, _ in panoramas(scenario.world(0), _FEATURES_S)]
     background = learn_background(images[:EMPTY_IMAGES])
@@ -167,7 +167,7 @@ def _drawn(image: Picture, background: Background, found: MeasuredFigure) -> Fig
         label(axes)
     cues, bearing = found.cues, np.degrees(found.bearing_rad)
     title = (
-        f"c) what is above the threshold: width {cues.width_px:.0f} px, {cues.gap_px:.0f} px to the bottom, "
+        f"c) pixels above the threshold: width {cues.width_px:.0f} px, {cues.gap_px:.0f} px to the bottom, "
         f"{cues.area_px:.0f} px in all, {abs(bearing):.1f} deg to the {'left' if bearing > 0.0 else 'right'}"
     )
     show_image(grid[3, 0], background.silhouette(image), title, **style)
@@ -176,7 +176,7 @@ def _drawn(image: Picture, background: Background, found: MeasuredFigure) -> Fig
 
 
 def _mark(axes: Axes, found: MeasuredFigure) -> None:
-    """Draw the person's box, the mean column, and the way to the lower border."""
+    """Draw the person's box, the mean column, and the distance to the lower border."""
     left, top, width, height = found.box
     right, bottom, border = left + width, top + height, len(found.rows) - 0.5
     axes.plot([left, right, right, left, left], [top, top, bottom, bottom, top], color=ORANGE, linewidth=1.0)
@@ -186,14 +186,14 @@ def _mark(axes: Axes, found: MeasuredFigure) -> None:
 
 
 def draw_webcam_images() -> Figure:
-    """Draw what the four webcams see at one instant, and where the hat was found."""
+    """Draw the images of the four webcams at one instant, and the detected hat."""
     config = load_scenario(SCENE).world(0)
     names = webcam_names(config)
     images = _images_after(config, _WEBCAMS_S)
     figure = canvas(4.4, 5.6)
     for axes, name in zip(figure.subplots(2, 2).flat, names, strict=True):
         column = hat_column(images[name])
-        place = "not seen whole" if column is None else f"at column {column:.1f}"
+        place = "not fully visible" if column is None else f"at column {column:.1f}"
         show_image(axes, images[name], f"{name}: hat {place}")
         if column is not None:
             axes.axvline(column, color=ORANGE, linewidth=1.0)
@@ -201,7 +201,7 @@ def draw_webcam_images() -> Figure:
 
 
 def draw_fields_of_view() -> Figure:
-    """Draw the floor plan with the webcams and the robot, shaded by how many webcams see a place."""
+    """Draw the floor plan with webcams and robot, shaded by the number of webcams that see a place."""
     scenario = load_scenario(SCENE)
     config = scenario.world(0)
     webcams = true_webcams(config, webcam_names(config))
@@ -215,7 +215,7 @@ def draw_fields_of_view() -> Figure:
     figure, axes = single(4.6)
     style: dict[str, Any] = {"cmap": "Greens", "shading": "nearest", "rasterized": True}
     drawn = axes.pcolormesh(x, y, seen, vmin=-0.5, vmax=4.5, **style)
-    figure.colorbar(drawn, ax=axes, ticks=range(5), label="webcams that see it", shrink=0.8)
+    figure.colorbar(drawn, ax=axes, ticks=range(5), label="webcams in view", shrink=0.8)
     axes.plot(webcams[:, X], webcams[:, Y], "o", color=ORANGE, markersize=9)
     axes.add_patch(Rectangle((low_x, low_y), high_x - low_x, high_y - low_y, fill=False, linewidth=1.5))
     axes.plot(*config.robot.at_m, "s", color=_RED, markersize=10)
@@ -241,7 +241,7 @@ def draw_correlations(using: Measurement) -> Figure:
 
 
 def draw_path(using: Measurement) -> Figure:
-    """Draw a piece of a path on the floor: true, by the model alone, and with the filter (figure 6)."""
+    """Draw a section of a path on the floor: true, by the model alone, and with the filter (figure 6)."""
     (first,) = using.results([Unit.of(measure_walk, ROOM, 0)])
     run = DistanceSamples.from_plain(first)
     measured = run.positions_at(predicted_in_turn(run, SplitTrial(split="blocks")))
@@ -261,7 +261,7 @@ def draw_path(using: Measurement) -> Figure:
 
 
 def draw_ranges(using: Measurement) -> Figure:
-    """Draw the mean error of the distance over the distance, by room; nobody is tested on whom it learned."""
+    """Draw the mean error of the distance over the distance, by room, from test images only."""
     figure, axes = single(3.4)
     for (room, runs), colour in zip(walks_of(using).items(), _ROOMS, strict=False):
         distance = np.concatenate([run.distance_m for run in runs])
@@ -279,7 +279,7 @@ def draw_ranges(using: Measurement) -> Figure:
 
 
 def error_by_range(distance_m: Floats, errors_m: Floats) -> tuple[Floats, Floats, Floats]:
-    """Give the middles [m] of classes of distances, and mean and deviation of the errors there, each (K,)."""
+    """Return the centres [m] of bins of distances, and mean and deviation of their errors, each (K,)."""
     number = np.floor(distance_m / _CLASS_M).astype(np.int64)
     known = [k for k in np.unique(number).tolist() if np.count_nonzero(number == k) >= _LEAST]
     return (

@@ -1,4 +1,4 @@
-"""Plots of experiments' values, as SVG pictures that lie inside the page."""
+"""Plot the values of experiments as SVG pictures that are embedded in the page."""
 
 import base64
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ _OTHERS = ("#1f78b4", "#66a61e", "#7570b3")
 
 
 def draw(experiment: Experiment, samples: Samples) -> str | None:
-    """Draw an experiment as an SVG data address; None if there is nothing to draw."""
+    """Draw an experiment as an SVG data URL; None if there is nothing to draw."""
     if experiment.chart == "none":
         return None
     figure = (
@@ -47,7 +47,7 @@ def draw(experiment: Experiment, samples: Samples) -> str | None:
 def _lines(column: str, samples: Samples, experiment: Experiment) -> Figure:
     """Draw a sweep: one curve each for the source and the trackers.
 
-    Titles of sweeps say after the comma what is varied.
+    The title of a sweep names the varied quantity after the comma.
     """
     figure, axes = svg_axes(6.0, 3.2)
     groups = list(dict.fromkeys([*(line.group for line in samples), *experiment.printed(column)]))
@@ -79,7 +79,7 @@ def _lines(column: str, samples: Samples, experiment: Experiment) -> Figure:
 
 
 def _bars(columns: Sequence[str], samples: Samples, experiment: Experiment) -> Figure:
-    """Draw clusters of bars: of all columns in one plot a group, or of all groups in one plot a column."""
+    """Draw clusters of bars: all columns in one plot per group, or all groups in one plot per column."""
     groups = _groups(samples, columns, experiment)
     by_column = {column: _series(samples, column, experiment) for column in columns}
     plots, clusters = (groups, columns) if len(columns) > len(groups) else (columns, groups)
@@ -101,7 +101,7 @@ def _bars(columns: Sequence[str], samples: Samples, experiment: Experiment) -> F
 
 
 def _groups(samples: Samples, columns: Sequence[str], experiment: Experiment) -> list[str]:
-    """List the groups of the source and ours, in the source's order."""
+    """Return the printed and measured groups, in the source's order."""
     theirs = [group for column in columns for group in experiment.printed(column)]
     return list(dict.fromkeys([*theirs, *(line.group for line in samples)]))
 

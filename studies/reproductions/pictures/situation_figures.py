@@ -1,4 +1,4 @@
-"""Figures of the thesis on situation awareness: tracked drives, scene models and attention."""
+"""Draw the figures of the thesis on situation awareness: tracked drives, scene models and attention."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -60,7 +60,7 @@ Floats = NDArray[np.float64]
 Film = Mapping[str, Any]
 
 _AXES: Final = {5: ("z, ahead", ORANGE), 6: ("x, sideways", BLUE)}
-"""Columns of hits with errors against the surface."""
+"""Columns of hits with errors to the visible surface."""
 _IDS: Final = colormaps["tab10"]
 _GAP: Final = 3  # frames that a track may miss before its line ends
 
@@ -73,7 +73,7 @@ _ALONE: Final = replace(AttentionConfig(), scales=(1.0,))
 
 
 def draw_drives(using: Measurement, *, figure: str, sets: Sequence[int]) -> Figure | None:
-    """Draw some sets, each played with seed 0; None where a plan leaves out all of them."""
+    """Draw some sets, each played with seed 0; None if a plan omits all of them."""
     names = tuple(CHOICES) if figure == "crossing" else MAIN
     shown = [number for number in sets if number in using.plan.sets]
     most_s = using.plan.drive_s
@@ -82,7 +82,7 @@ def draw_drives(using: Measurement, *, figure: str, sets: Sequence[int]) -> Figu
 
 
 def draw_paths(films: Mapping[str, Film]) -> Figure:
-    """Draw films' paths relative to the robot: who counts in red, tracks in a colour each."""
+    """Draw paths relative to the robot: counted people in red, each track in its own colour."""
     columns = 3
     rows = math.ceil(len(films) / columns)
     figure = canvas(3.0 * rows)
@@ -95,7 +95,7 @@ def draw_paths(films: Mapping[str, Film]) -> Figure:
 
 
 def draw_world(films: Mapping[str, Film]) -> Figure:
-    """Draw tracks in the world, and the path of the robot with where it looks."""
+    """Draw tracks in the world, and the path and headings of the robot."""
     (film,) = films.values()
     figure, axes = single(3.4)
     robot = np.array(film["robot"])
@@ -138,7 +138,7 @@ def draw_people(films: Mapping[str, Film]) -> Figure:
 
 
 def draw_errors(films: Mapping[str, Film]) -> Figure:
-    """Draw the distance of a film's first person over time, and the errors sideways and ahead."""
+    """Draw the distance of a drive's first person over time, and the errors sideways and ahead."""
     (film,) = films.values()
     hits = hit_rows(film[DEFAULT])
     hits = hits[hits[:, 1] == hits[:, 1].min()]
@@ -157,7 +157,7 @@ def draw_errors(films: Mapping[str, Film]) -> Figure:
 
 
 def draw_crossing(films: Mapping[str, Film]) -> Figure:
-    """Draw the true paths of a film beside those of the tracker without and with depth in its filters."""
+    """Draw true paths, and tracks without and with depth in the filters."""
     (film,) = films.values()
     paths = {
         "true": _counted(film),
@@ -180,7 +180,7 @@ _FIGURES: Final[Mapping[str, Callable[[Mapping[str, Film]], Figure]]] = {
     "errors": draw_errors,
     "crossing": draw_crossing,
 }
-"""Figures of drives, by the name that declarations have for them."""
+"""Figures of drives, by their name in declarations."""
 
 
 def draw_legs(using: Measurement) -> Figure:
@@ -201,12 +201,12 @@ def draw_legs(using: Measurement) -> Figure:
 
 
 def _rows(tracks: Sequence[Sequence[float]]) -> Floats:
-    """Return frame, track and place (N, 4)."""
+    """Return frame, track and position (N, 4)."""
     return np.array(tracks).reshape(-1, 4)
 
 
 def _counted(film: Film) -> Floats:
-    """Return frame, person and place (N, 4) of everybody who counts."""
+    """Return frame, person and position (N, 4) of all counted people."""
     truth = np.array(film["truth"], dtype=np.float64).reshape(-1, 7)
     return np.asarray(truth[truth[:, 6] > 0.0][:, :4])
 
@@ -214,7 +214,7 @@ def _counted(film: Film) -> Floats:
 def _lines(
     axes: Axes, rows: Floats, colour: str | None = None, width: float = 1.0, *, as_plan: bool = True
 ) -> None:
-    """Draw the way of each id of rows (N, 4), frame, id, x, y; on a plan x is up and y to the left."""
+    """Draw the path of each id from rows (N, 4), frame, id, x, y; on a plan x is up and y to the left."""
     for number, identity in enumerate(np.unique(rows[:, 1])):
         own = rows[rows[:, 1] == identity]
         for part in (own[frames] for frames in unbroken(own[:, 0], _GAP)):
@@ -226,11 +226,11 @@ def _lines(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LearnedFilm:
-    """A person who was learned, and later images of the same person.
+    """A learned person, and later images of the same person.
 
     Attributes:
-        moment: in which it was learned.
-        person: of that moment.
+        moment: the moment of learning.
+        person: ground truth at that moment.
         later: further images.
     """
 
@@ -240,12 +240,12 @@ class LearnedFilm:
 
     @property
     def box(self) -> Box:
-        """The box that was learned."""
-        assert self.person.box is not None  # it can be learned
+        """The learned box."""
+        assert self.person.box is not None  # the person can be learned
         return self.person.box
 
     def learned(self, config: AttentionConfig) -> tuple[ImageSums, PersonModel]:
-        """Learn the person, and give what was seen, too."""
+        """Learn the person; return the learned appearance with the image that was used."""
         sight = ImageSums.of(self.moment.frame.rgb(COLOUR), config)
         return sight, learn(sight, self.box, config)
 
@@ -263,7 +263,7 @@ def learned_films(scenario: str = FOCUS_SCENE, seed: int = 1, every: int = 15) -
 
 
 def draw_excitation() -> Figure:
-    """Draw excitation and inhibition of a torso, and what is left: figure 5.6."""
+    """Draw excitation and inhibition of a torso, and their difference: figure 5.6."""
     first = next(learned_films())
     sight, look = first.learned(_MEANS)
     known = dict(look.parts)[TORSO]
@@ -295,13 +295,13 @@ def draw_part_scores() -> Figure:
 
 
 def draw_focus_paths() -> Figure:
-    """Draw where the focus goes for each of three people, from image to image: figure 5.8."""
+    """Draw the path of the focus for each of three people, from image to image: figure 5.8."""
     films = list(learned_films(every=5))
     page = canvas(4.2)
     for (above, below), film in zip(page.subplots(2, len(films)).T, films, strict=True):
         sight, look = film.learned(_ALONE)
         _show_maps([above], [search(sight, look, _ALONE).scores], [f"score, {film.person.name}"])
-        _show_colour(below, film.later[-1], "way of the focus")
+        _show_colour(below, film.later[-1], "path of the focus")
         places = [
             search(ImageSums.of(one.frame.rgb(COLOUR), _ALONE), look, _ALONE).place for one in film.later
         ]
@@ -311,7 +311,7 @@ def draw_focus_paths() -> Figure:
 
 
 def draw_examples() -> Figure:
-    """Draw all maps of a few images, and the place that they lead to: figure 5.9."""
+    """Draw all maps of a few images, and the resulting focus: figure 5.9."""
     film, config = next(iter(learned_films("follow_passers_by", 0, 60))), AttentionConfig()
     _, look = film.learned(config)
     shown = film.later[1:11:2]
@@ -339,15 +339,15 @@ def _show_colour(axes: Axes, moment: Moment, title: str) -> None:
 def _show_maps(row: Sequence[Axes], maps: Sequence[NDArray[np.number] | None], names: Sequence[str]) -> None:
     for axes, scores, name in zip(row, maps, names, strict=True):
         assert scores is not None
-        # Scores outside the image are 0, and likely places may differ little: the scale begins above 0.
+        # Scores outside the image are 0, and high scores may differ little: the scale starts above 0.
         lowest = np.percentile(scores[scores > 0], 1.0) if (scores > 0).any() else None
         show_image(axes, scores, name, cmap="inferno", interpolation="nearest", vmin=lowest)
 
 
 def scene_maps(using: Measurement) -> Figure | None:
-    """Draw the truth of a sequence of each kind, and what models take for background (figures 3.8 to 3.13).
+    """Draw ground truth and models' backgrounds for a sequence of each kind (figures 3.8 to 3.13).
 
-    None where a plan leaves out all of them.
+    None if a plan omits all of them.
     """
     names = [name for name in using.plan.scenes if name in SHOWN]
     runs = using.results(Unit.of(watch_scene, name, 0, TOF) for name in names)

@@ -1,4 +1,4 @@
-"""Figures of the thesis on people tracking, and figure 4 of the 2005 paper."""
+"""Draw the figures of the thesis on people tracking, and figure 4 of the 2005 paper."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -42,25 +42,25 @@ _COLOURS: Final = (BLUE, ORANGE, GREEN, "#7570b3", PINK)
 
 # Figure 3.4: two people cross, and the tracker makes one kind of error.
 _FRAMES: Final = 60
-_FIRST, _SECOND = 1, 2  # who walks to the right, and who to the left
+_FIRST, _SECOND = 1, 2  # the person who walks to the right, and the one who walks to the left
 _BOX: Final = (40.0, 130.0)  # width and height [px]
 _TOP: Final = 60.0
-_OFF_PX: Final = (2.0, 4.0)  # by how much every candidate is off
+_OFF_PX: Final = (2.0, 4.0)  # offset of every candidate
 
 # Figure 5.3: two people come to overlap.
 MEETING_SCENE: Final = "leader_swap"
 PENALTIES: Final = (10.0, 1.0)
 _STREAMS: Final = 6  # random streams of the tracker, all drawn
-_BEFORE: Final = 12  # images from where both are made known to where they are drawn
-_HIDDEN: Final = 0.2  # share of a person that is hidden where they are drawn
+_BEFORE: Final = 12  # images from the initialisation of both to the drawn image
+_HIDDEN: Final = 0.2  # hidden share of a person in the drawn image
 _CONTOUR_COLOURS: Final = ("#ffb000", "#00b3ff")
 
 # Figures 4.4 and 7.2: contours with and without people.
 CONTOUR_SCENE: Final = "passers_by"
 SEED: Final = 100
-_EVERY: Final = 5  # images from one that is looked at to the next
-_IMAGES: Final = 30  # of each kind, as in the thesis
-_PLAIN: Final = 0.9  # visible fraction from which a person is seen whole
+_EVERY: Final = 5  # interval between images
+_IMAGES: Final = 30  # images of each kind, as in the thesis
+_PLAIN: Final = 0.9  # minimum visible fraction of a fully visible person
 _THRESHOLD_GREY: Final = 22.0  # theta
 
 # Figure 4 of the paper.
@@ -71,8 +71,8 @@ CORRECT, SCATTERING, SWAPPING, FETCHING = "a) correct", "b) scattering", "c) swa
 
 
 def _claims(error: str, frame: int) -> list[tuple[int, int]]:
-    """Return the persons on whom candidates lie in a frame, each with the candidate's id."""
-    if error == SCATTERING:  # the first person is lost for a while, twice, and gets a new track each time
+    """Return the people that candidates are on in a frame, each with the candidate's id."""
+    if error == SCATTERING:  # the first person is lost twice, and gets a new track each time
         return [(_FIRST, 10 + frame // 20)] * (frame % 20 < 15) + [(_SECOND, _SECOND)]
     have_met = frame >= _FRAMES // 2
     if error == SWAPPING and have_met:
@@ -81,12 +81,12 @@ def _claims(error: str, frame: int) -> list[tuple[int, int]]:
 
 
 def score_error(name: str) -> Scores:
-    """Score the claims of one kind of error about two people who cross."""
+    """Score the tracks of two crossing people with one kind of error."""
     return evaluate(_true_walks(), _tracks(name), frames=_FRAMES)
 
 
 def draw_errors() -> Figure:
-    """Draw true walks and tracks over time, with the metrics of each error: figure 3.4."""
+    """Draw true paths and tracks over time, with the metrics of each error: figure 3.4."""
     page, kinds = canvas(4.6), (CORRECT, SCATTERING, SWAPPING, FETCHING)
     for axes, name in zip(page.subplots(2, 2, sharex=True, sharey=True).flat, kinds, strict=True):
         _draw_walks(axes, name)
@@ -152,7 +152,7 @@ def score_example() -> Scores:
 
 
 def draw_example() -> Figure:
-    """Draw targets, candidates, what they share where they are associated, and the metrics: figure 3.5."""
+    """Draw targets, candidates, intersections of associated boxes, and the metrics: figure 3.5."""
     page = canvas(3.0)
     axes, text = page.subplots(1, 2, width_ratios=(2, 1))
     for boxes, colour, style in ((TARGETS, BLACK, "-"), (CANDIDATES, ORANGE, "--")):
@@ -174,7 +174,7 @@ def draw_example() -> Figure:
 
 
 def shared(one: Floats, other: Floats) -> Box:
-    """Return the box (left, top, width, height) that two overlapping boxes (4,) share."""
+    """Return the intersection (left, top, width, height) of two overlapping boxes (4,)."""
     corner = np.maximum(one[:2], other[:2])
     size = np.minimum(one[:2] + one[2:], other[:2] + other[2:]) - corner
     return float(corner[0]), float(corner[1]), float(size[0]), float(size[1])
@@ -187,7 +187,7 @@ class Meeting:
     Attributes:
         frames: thermal images with their times, the last of which is drawn.
         boxes: of the two [px] in the first two of these images.
-        apart_px: between the middles of their true boxes in the last.
+        apart_px: distance between the centres of their true boxes in the last image.
     """
 
     frames: Sequence[Frame]
@@ -196,7 +196,7 @@ class Meeting:
 
 
 def draw_interaction() -> Figure:
-    """Draw where random streams end up with a strong and a weak penalty on overlap: figure 5.3."""
+    """Draw results of random streams with a strong and a weak penalty on overlap: figure 5.3."""
     meeting = find_meeting()
     page = canvas(3.0)
     for axes, penalty in zip(page.subplots(1, 2), PENALTIES, strict=True):
@@ -205,10 +205,10 @@ def draw_interaction() -> Figure:
 
 
 def find_meeting() -> Meeting:
-    """Play the scenario until a person hides a fifth of another one, and keep the images before.
+    """Play the scenario until a person hides a fifth of another one, and return the images before.
 
     Raises:
-        RuntimeError: nobody comes to hide anybody.
+        RuntimeError: no person hides another one.
     """
     frames: list[Frame] = []
     boxes: list[dict[str, Box]] = []
@@ -228,7 +228,7 @@ def find_meeting() -> Meeting:
 
 
 def contours_after(meeting: Meeting, penalty: float, number: int) -> list[Ellipse]:
-    """Follow the two with a random stream of the literal tracker, and give the contours at the end."""
+    """Track the two with a random stream of the literal tracker, and return the contours at the end."""
     config = replace(THESIS, interaction=replace(THESIS.interaction, penalty=penalty))
     tracker = ContourTracker(config, stream(number, "reproduce.interaction"))
     for box, frame in zip((*meeting.boxes, *[None] * len(meeting.frames)), meeting.frames, strict=False):
@@ -258,13 +258,13 @@ def thermal_moments() -> Iterator[Moment]:
 
 
 def _whole(moment: Moment) -> list[PersonTruth]:
-    """Return the people who are in plain view."""
+    """Return the people who are fully visible."""
     people = [one for one in moment.truth.people if one.visible_px > 0 and one.box is not None]
     return [one for one in people if one.visible_fraction > _PLAIN]
 
 
 def draw_fitness() -> Figure:
-    """Draw how many samples of the prior fit how well, without and with a person: figure 4.4."""
+    """Draw histograms of the fitness of prior samples, without and with a person: figure 4.4."""
     moments = list(thermal_moments())
     kinds = {
         "30 images without a person": [
@@ -307,7 +307,7 @@ def fitness_grey(thermal: NDArray[np.uint8], state: NDArray[np.float32]) -> Floa
 
 
 def _cues(moment: Moment) -> Iterator[tuple[float, float, float, float]]:
-    """Return distance, strength, top and bottom of the contour that fits best around each whole person."""
+    """Return distance, strength, top and bottom of the best contour of each fully visible person."""
     rng = stream(SEED, "reproduce.cues")
     for person in _whole(moment):
         assert person.box is not None
@@ -319,7 +319,7 @@ def _cues(moment: Moment) -> Iterator[tuple[float, float, float, float]]:
 
 
 def draw_time_ranges() -> Figure:
-    """Draw a line for each person over the images in which it is counted and in sight: paper, figure 4."""
+    """Draw a line for each person over the images with the person counted and visible: paper, figure 4."""
     seen: dict[str, list[int]] = {}
     for moment in play(load_scenario(SPANS_SCENE), 0, THERMAL):
         for person in moment.truth.people:
