@@ -138,7 +138,7 @@ def track_label(track: Track) -> str:
 def truth_boxes(people: Iterable[PersonTruth]) -> Boxes:
     """Return the true boxes of people in one camera's image, with name and visible share.
 
-    Those behind the camera are left out.
+    People behind the camera are omitted.
     """
     seen = [(person, person.box) for person in people if person.box is not None]
     labels = [f"{person.name} {person.visible_fraction:.0%}" for person, _ in seen]

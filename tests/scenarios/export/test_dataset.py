@@ -126,7 +126,7 @@ def test_a_set_grows_without_rendering_again_and_broken_images_are_found(
     order = (rendered / "tiny.yaml", "--frames", "--seeds", 3, "--workers", 1, "--out", folder)
     assert run_cli("render", *order) == 1
     told, sheet = capsys.readouterr().out, (folder / "README.md").read_text()
-    assert "FAILED: every image is there" in told
+    assert "FAILED: every image exists" in told
     assert f"\n{lacking_splits(range(3))}\n" in told
     assert f"**{lacking_splits(range(3))}.**" in sheet
     assert 0 < int(re.search(r"The runs take (\d+) MB", sheet)[1]) < 100

@@ -112,7 +112,7 @@ def test_the_truth_has_boxes_round_whole_people_if_asked_and_folders_may_share_a
     order = ("--format", "mot", "--boxes", "whole", "--out", out)
     assert run_cli("export", crossing, again, *order) == 0
     for told in capsys.readouterr().err.splitlines()[-2:]:
-        assert_names(told, "note: boxes of", "round torsos", "--boxes torso")
+        assert_names(told, "note: boxes of", "enclose torsos", "--boxes torso")
     data = dataset(out, capsys)
     for tracker, run in (("detection", crossing), ("thesis", thesis)):
         assert run_cli("evaluate", run, "--boxes", "whole", "--json") == 0

@@ -128,7 +128,7 @@ def test_a_camera_of_16_bits_or_none_is_refused(tmp_path: Path, capsys: pytest.C
     cameras = {**SCENE["robot"]["cameras"], "depth": {"kind": "depth"}}
     scene = SCENE | {"duration_s": 0.2, "robot": SCENE["robot"] | {"cameras": cameras}}
     run = make_run(scene, tmp_path / "deep")
-    for camera, words in (("depth", ("'depth'", "16 bits")), ("front", ("'front'", "thermal"))):
+    for camera, words in (("depth", ("'depth'", "16-bit")), ("front", ("'front'", "thermal"))):
         told = refusal(capsys, "export", run, "--format", "yolo", "--camera", camera)
         assert_names(told, *words)
     assert not (tmp_path / "deep-yolo-depth").exists()

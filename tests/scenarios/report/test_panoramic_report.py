@@ -61,7 +61,7 @@ def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 @pytest.mark.slow
 def test_people_count_within_the_limits_of_panoramas(found: RunFindings) -> None:
     assert found.camera == "panorama"
-    assert "1 more never came within 1.1 to 7 m in sight" in headline([found])
+    assert "1 more never visible at 1.1 to 7 m" in headline([found])
     assert str(find_cause(found, found.called("ben"), 0, 0)) == "was beyond 7 m"
     edges = distance_edges([found])
     assert edges == (1.1, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)

@@ -457,7 +457,7 @@ def test_a_run_whose_scenario_is_missing_or_spoilt_is_reported_on_and_says_so(
     (column,) = read_columns([path.parent])
     (line,) = lacking([column])
     assert line.startswith(f"{path}: ")
-    assert line.endswith("no plan is drawn and no image rendered again; run the scenario again for them")
+    assert line.endswith("the plan and images rendered again are missing; run the scenario again to get them")
     assert column.headline == whole.headline
 
 
@@ -471,5 +471,5 @@ def test_a_table_of_another_version_is_refused_with_the_column_that_it_lacks(tmp
 def test_metrics_of_another_version_are_refused_with_their_group(tmp_path: Path) -> None:
     path = toy.write_run(tmp_path / "run") / "metrics.json"
     path.write_text(json.dumps({"following": {"unheard_of": 1.0}}))
-    with pytest.raises(BadInput, match=r"metrics\.json: following: not the figures of this version"):
+    with pytest.raises(BadInput, match=r"metrics\.json: following: not the metrics of this version"):
         drive_figures(read_columns([path.parent]), "following")

@@ -200,7 +200,7 @@ def test_a_page_that_cannot_be_written_is_refused_and_nothing_is_left(runs: Path
         ("other.html", "is not a report and will not be replaced; give another --out"),
         ("README.md/x", "a report is a page; give --out a file that ends in .html"),
         ("README.md/x.html", "cannot write here: Not a directory; give another --out"),
-        ("new.txt", "a report is a page; give --out a file that ends in .html"),
+        ("new.txt", "a report is an HTML page; give --out a file that ends in .html"),
         (f"{'long' * 99}.html", "cannot write here: File name too long; give another --out"),
     ],
 )
@@ -271,7 +271,7 @@ def test_short_losses_that_are_left_out_are_counted_also_when_no_other_is_there(
     )
     text = " ".join(structure(tmp_path / "page.html").text.split())
     assert "No track was lost for 0.3 s or more." in text
-    assert "Losses of less than 0.3 s (1 of them) are left out" in text
+    assert "Losses of less than 0.3 s (1 of them) are omitted" in text
 
 
 def test_the_command_writes_the_page_into_the_run(runs: Path, capsys: pytest.CaptureFixture[str]) -> None:

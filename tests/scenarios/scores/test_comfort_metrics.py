@@ -93,7 +93,7 @@ def test_arrays_that_do_not_belong_together_are_refused():
         made_drive(np.zeros(0), np.zeros((0, 3)))
     with pytest.raises(BadInput, match="shapes"):
         made_drive(np.arange(2.0), np.zeros((2, 3)), count=np.array([0, 1]))
-    with pytest.raises(BadInput, match="rise"):
+    with pytest.raises(BadInput, match="increase"):
         made_drive(np.zeros(2), np.zeros((2, 3)))
 
 
@@ -116,5 +116,5 @@ def test_comfort_of_runs_is_the_mean_over_those_that_tell_it(tmp_path):
     assert means["one"].personal_s == STEP_S / 2.0
     assert math.isnan(means["one"].min_time_to_collision_s)
     (tmp_path / "a" / "metrics.json").write_text('{"comfort": {"personal_s": 1.0}}', encoding="utf-8")
-    with pytest.raises(BadInput, match="not the figures of this version"):
+    with pytest.raises(BadInput, match="not the metrics of this version"):
         comfort_by_tracker(groups)

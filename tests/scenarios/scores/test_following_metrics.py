@@ -119,7 +119,7 @@ def test_a_person_who_is_away_is_not_lost_meanwhile():
 def test_arrays_of_different_lengths_and_standing_time_are_refused():
     with pytest.raises(BadInput, match="shapes"):
         made_drive(np.arange(3.0), np.zeros((3, 3)), target=np.ones((2, 2)))
-    with pytest.raises(BadInput, match="rise"):
+    with pytest.raises(BadInput, match="increase"):
         made_drive(np.zeros(3), np.zeros((3, 3)))
 
 

@@ -109,7 +109,7 @@ def test_boxes_that_are_corners_are_said_to_be(
     options = ("--name", "theirs", "--boxes", kind, "--no-recording", "--out", out)
     assert run_cli("import-tracks", seen, corners, *options) == 0
     (note,) = figures(capsys, out)["notes"]
-    assert_names(note, "no corners", "left, top, width and height")
+    assert_names(note, "not corners", "left, top, width and height")
 
 
 def test_torsos_are_the_default_and_called_so_if_held_against_whole_people(

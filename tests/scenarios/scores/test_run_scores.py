@@ -45,10 +45,10 @@ def test_who_counts_is_said_where_nobody_does(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("found", "false", "clues"),
     [
-        (200, 0, ["100 % of 200 cases", "100 % of the boxes given", "no identity switch, no false track."]),
-        (199, 1, ["99 % of 200 cases", "99 % of the boxes", "1 false track."]),
+        (200, 0, ["100 % of 200 cases", "100 % of boxes are correct", "no identity switch, no false track."]),
+        (199, 1, ["99 % of 200 cases", "99 % of boxes", "1 false track."]),
         (1, 2, ["1 % of 200 cases", "2 false tracks."]),
-        (0, 0, ["0 % of 200 cases, no box given"]),
+        (0, 0, ["0 % of 200 cases, there are no boxes"]),
     ],
 )
 def test_all_means_all_and_none_means_none(found: int, false: int, clues: list[str], tmp_path: Path) -> None:
@@ -66,7 +66,7 @@ def test_who_follows_somebody_else_is_told_so(tmp_path: Path) -> None:
         track=np.ones(30, np.int64),
         is_wrong=np.arange(30) < 12,
     )
-    assert "went after somebody else for 0.8 s; no contact" in headline(
+    assert "followed another person for 0.8 s; no contact" in headline(
         RunScores(people, score_following(run))
     )
     right = dataclasses.replace(run, is_wrong=still)
@@ -75,6 +75,6 @@ def test_who_follows_somebody_else_is_told_so(tmp_path: Path) -> None:
 
 def test_a_corridor_without_a_straight_leg_says_nothing_of_its_middle(tmp_path: Path) -> None:
     people = scores_of(tmp_path, 200)
-    assert "0.05 m RMS off the middle; no contact" in headline(RunScores(people, None, CORRIDOR))
+    assert "lateral error of 0.05 m RMS; no contact" in headline(RunScores(people, None, CORRIDOR))
     bent = dataclasses.replace(CORRIDOR, lateral_rms_m=math.nan, contacts=2)
     assert "0.50 m/s; 2 contacts" in headline(RunScores(people, None, bent))

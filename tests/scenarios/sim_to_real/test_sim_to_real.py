@@ -171,7 +171,7 @@ def test_runs_of_one_scenario_are_one_scene(tmp_path: Path) -> None:
         ),
         (
             lambda home: cv2.imwrite(str(home / "thermal" / "000002.png"), np.zeros((200, 200), np.uint8)),
-            ("000002.png", "one size"),
+            ("000002.png", "size of the first"),
         ),
     ],
 )
