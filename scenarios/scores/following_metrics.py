@@ -71,7 +71,7 @@ class FollowingScore(ScoreRecord):
     min_distance_m: float = metric(
         "nearest", "m", "smallest distance to the person to follow, centre to centre"
     )
-    collisions: int = metric("collisions", "", "number of contacts")
+    collisions: int = metric("collisions", "", "contacts that start during the run")
     times_lost: int = metric("times lost", "", "periods without a track since found")
     longest_lost_s: float = metric("longest lost", "s", "longest period without a track since found")
     followed_to_end: bool = metric("to the end", "", "1 if the right person was followed at the end")

@@ -62,10 +62,10 @@ def test_weights_of_sections_add_up_to_one_whatever_the_shoulders_count() -> Non
 @pytest.mark.parametrize(
     ("one", "best", "verdict"),
     [
-        (tuned(v2=[60, 61, 62], v5=[50, 51, 52]), "2", "no other does better"),
-        (tuned(v2=[60, 61, 62], v5=[60, 61, 62]), "2", "no other does better"),
+        (tuned(v2=[60, 61, 62], v5=[50, 51, 52]), "2", "no other value is better"),
+        (tuned(v2=[60, 61, 62], v5=[60, 61, 62]), "2", "no other value is better"),
         (tuned(v2=[50, 51, 52], v5=[60, 61.2, 62]), "5", "5 is better"),
-        (tuned(v2=[60, 61, 62], v5=[60.1, 61, 62]), "5", "it matters little"),
+        (tuned(v2=[60, 61, 62], v5=[60.1, 61, 62]), "5", "little effect"),
         (tuned(v2=[50, 60, 70], v5=[70, 55, 62]), "5", "undecided"),
         (tuned(v2=[50], v5=[70]), "5", "undecided"),
     ],
