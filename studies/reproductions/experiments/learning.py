@@ -182,7 +182,7 @@ def random_split(examples: PairSamples, rng: np.random.Generator) -> Split[PairS
 
 
 def split_by_scenario(examples: PairSamples, rng: np.random.Generator) -> Split[PairSamples]:
-    """Return a split by scenario: random scenarios with 60 % of the pairs for training, the rest for the test.
+    """Split by scenario: random scenarios with 60 % of the pairs are for training, the rest for the test.
 
     At least one scenario is kept for the test, unless there is only one.
     """

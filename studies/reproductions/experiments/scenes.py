@@ -165,9 +165,9 @@ def watch_scene(sequence: str, seed: int, preset: str) -> Result:
     """Play one of `SEQUENCES` once for a depth camera, and run models on it.
 
     Returns:
-        Plain data by the model's name: errors of its background, relative to what was ever visible, and to the
-        place without people and objects; pixels, events, and milliseconds. With seed 0 of `SHOWN` sequences
-        also "maps", the backgrounds.
+        Plain data by the model's name: errors of its background, relative to what was ever visible, and to
+        the place without people and objects; pixels, events, and milliseconds. With seed 0 of `SHOWN`
+        sequences also "maps", the backgrounds.
 
     Raises:
         BadInput: the scenario has no frames.

@@ -125,10 +125,10 @@ def measure_webcams(seed: int) -> dict[str, Any]:
         Plain data: mean distances [m] of the triangulated hat from its true position, the middle between the
         ears, while the person stands at the known positions, "in_sample_m", or at others, "new_m"; and while
         the person walks, with simultaneous images, "walking_m", or images one after the other within
-        `SKEW_S`, "skewed_m". For these two also "bearing_deg" and "skewed_bearing_deg", mean errors [deg] of the bearing
-        from the robot; and as "panorama_...", an `ErrorSummary` of the bearing [deg] of the silhouette in the
-        panorama, as measured by the paper's tracker, against ground truth and against webcams "at_once", "skewed",
-        or "late" by `SKEW_S`.
+        `SKEW_S`, "skewed_m". For these two also "bearing_deg" and "skewed_bearing_deg", mean errors [deg] of
+        the bearing from the robot; and as "panorama_...", an `ErrorSummary` of the bearing [deg] of the
+        silhouette in the panorama, as measured by the paper's tracker, against ground truth and against
+        webcams "at_once", "skewed", or "late" by `SKEW_S`.
 
     Raises:
         BadInput: a webcam sees the hat too seldom; checked before the scene is played if possible.

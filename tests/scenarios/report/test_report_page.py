@@ -198,7 +198,7 @@ def test_a_page_that_cannot_be_written_is_refused_and_nothing_is_left(runs: Path
         ("README.md", "is not a report and will not be replaced; give --out a file that ends in .html"),
         ("tracks.txt", "is not a report and will not be replaced; give --out a file that ends in .html"),
         ("other.html", "is not a report and will not be replaced; give another --out"),
-        ("README.md/x", "a report is a page; give --out a file that ends in .html"),
+        ("README.md/x", "a report is an HTML page; give --out a file that ends in .html"),
         ("README.md/x.html", "cannot write here: Not a directory; give another --out"),
         ("new.txt", "a report is an HTML page; give --out a file that ends in .html"),
         (f"{'long' * 99}.html", "cannot write here: File name too long; give another --out"),
@@ -263,7 +263,7 @@ def test_short_losses_that_are_left_out_are_counted_also_when_no_other_is_there(
     pages: dict[str, Path], tmp_path: Path
 ) -> None:
     text = " ".join(structure(pages["blinking"]).text.split())
-    assert "Losses of less than 0.3 s (1 of them) are left out" in text
+    assert "Losses of less than 0.3 s (1 of them) are omitted" in text
     assert "not detected any more, confidence 0.90" in text
     write_report(
         [toy.write_run(tmp_path / "run", lambda frame: toy.flickering(min(frame, 40)))],
