@@ -201,7 +201,6 @@ def test_a_page_that_cannot_be_written_is_refused_and_nothing_is_left(runs: Path
         ("README.md/x", "a report is an HTML page; give --out a file that ends in .html"),
         ("README.md/x.html", "cannot write here: Not a directory; give another --out"),
         ("new.txt", "a report is an HTML page; give --out a file that ends in .html"),
-        (f"{'long' * 99}.html", "cannot write here: File name too long; give another --out"),
     ],
 )
 def test_a_report_replaces_nothing_but_a_report(
