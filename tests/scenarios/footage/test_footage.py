@@ -258,7 +258,7 @@ def test_of_one_annotated_person_only_what_it_can_tell_is_scored_at_once_and_lat
     names = {line.split()[0] for line in table.splitlines() if line.strip()}
     assert {"CR", "AR", "MOTP", "IDR", "IDSW", "true_tracks"} <= names
     assert not names & NEED_EVERYBODY
-    assert "One id keeps the annotated person" in again
+    assert "One id is on the annotated person" in again
     assert unknown.startswith("CP, CA, AP, AA,")
     assert (out / "truth" / "groundtruth.txt").read_bytes() == (clip / "groundtruth_rect.txt").read_bytes()
     stored = json.loads((out / "metrics.json").read_text())

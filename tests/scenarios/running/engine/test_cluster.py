@@ -57,7 +57,7 @@ def test_a_cluster_does_what_processes_do_and_a_failure_stops_no_other(tmp_path:
 
 @pytest.mark.parametrize(
     ("changed", "why"),
-    [({"source": "other"}, "another source of peopleboy"), ({"numpy": "0.1"}, "instead of 0.1")],
+    [({"source": "other"}, "a different source of peopleboy"), ({"numpy": "0.1"}, "instead of 0.1")],
 )
 def test_workers_of_another_version_are_refused(
     tmp_path: Path, cluster: str, monkeypatch: pytest.MonkeyPatch, changed: dict[str, str], why: str

@@ -163,7 +163,7 @@ def test_a_camera_that_is_none_is_refused(model, tmp_path):
     with np.load(tmp_path / "model.npz") as archive:
         arrays = {name: archive[name] for name in archive if name not in ("about", "camera")}
     WeightsArchive(arrays, camera={"width_px": 480}).save(tmp_path / "model.npz")
-    with refused(tmp_path / "model.npz", "no file of weights", "peopleboy train distance"):
+    with refused(tmp_path / "model.npz", "not a file of weights", "peopleboy train distance"):
         DistanceModel.load(tmp_path / "model.npz")
 
 
