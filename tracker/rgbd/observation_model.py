@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
+from peopleboy.tracker.rgbd.pre_detection import PreDetection
 from peopleboy.tracker.track import Box
 
 # Appearance of a person: a histogram of hue and saturation (SA 4.6).
@@ -118,6 +119,13 @@ class Glance:
     miss_m: Floats
     nearer: Floats
     beyond: Floats
+
+
+def body_position(found: PreDetection, view: RgbdView) -> Floats:
+    """Return the position (2,) of a body's middle, which is behind the visible surface."""
+    deeper = 1.0 + view.body_m / math.hypot(found.x_m, found.z_m)
+    at = np.array([found.x_m * deeper]), np.array([found.z_m * deeper])
+    return np.asarray(view.geometry.on_floor(*at)[0])
 
 
 def look_at(view: RgbdView, places_m: Floats, body: Body, foreground_m: float) -> Glance:

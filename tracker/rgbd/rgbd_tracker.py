@@ -8,11 +8,17 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Floats, Frame, check_frame
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame, check_frame
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.human_windows import range_of, window_of
 from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
-from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, box_at, colours_in
+from peopleboy.tracker.rgbd.observation_model import (
+    Body,
+    RgbdView,
+    body_position,
+    box_at,
+    colours_in,
+)
 from peopleboy.tracker.rgbd.pre_detection import Layout, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
 from peopleboy.tracker.rgbd.track_management import Management, associate, occluder_of
@@ -143,7 +149,7 @@ class RgbdTracker:
             appearance=colours_in(view, found.box),
         )
         return Detection(
-            found=found, place_m=_place(found, view), body=body, score=score, is_verified=is_verified
+            found=found, place_m=body_position(found, view), body=body, score=score, is_verified=is_verified
         )
 
     def _followed(
@@ -187,13 +193,6 @@ class RgbdTracker:
             age_s=frame.time_s - person.born_s,
             occluder=person.occluder,
         )
-
-
-def _place(found: PreDetection, view: RgbdView) -> Floats:
-    """Return the position (2,) of a body's middle, which is behind the visible surface."""
-    deeper = 1.0 + view.body_m / math.hypot(found.x_m, found.z_m)
-    at = np.array([found.x_m * deeper]), np.array([found.z_m * deeper])
-    return np.asarray(view.geometry.on_floor(*at)[0])
 
 
 def _boxes(person: Hypothesis, calibrations: Mapping[str, Calibration]) -> dict[str, Box]:

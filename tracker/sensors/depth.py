@@ -13,18 +13,16 @@ from peopleboy.tracker.boxes import intersection
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Floats, Frame, FreshImages
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.human_windows import range_of, window_of
-from peopleboy.tracker.rgbd.observation_model import RgbdView
+from peopleboy.tracker.rgbd.observation_model import RgbdView, body_position
 from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.window_model import WindowModel, shipped_windows
 from peopleboy.tracker.sensors.depth_visibility import (
     depth_visibility,
-    depths_at,
-    grid,
     shoulders,
     surface_m,
     view_of,
-    warm_share,
+    warmth,
 )
 from peopleboy.tracker.sensors.guided_search import search_near
 from peopleboy.tracker.tracking.appearance import FEATURES, Colours, describe_samples
@@ -239,15 +237,12 @@ class DepthSensor:
         across = math.hypot(config.floor_sd_m, config.narrow * narrow)
         along = math.hypot(config.floor_sd_m, config.depth_sd * found.z_m**2)
         return _Found(
-            _middle(found, view), ground - top, (across, along, config.head_sd_m), log_odds, found.box
+            body_position(found, view), ground - top, (across, along, config.head_sd_m), log_odds, found.box
         )
 
     def _warmth(self, found: PreDetection, frame: Frame) -> float:
         """Return the log-odds that an object's warmth adds; 0 where the thermal camera does not show it."""
-        pixels = grid(found.box, 10, 20, frame)
-        z_m = depths_at(pixels, frame)
-        own = (z_m > 0.0) & (np.abs(z_m - found.z_m) < 0.5)
-        warm = warm_share(pixels[own], z_m[own], frame)
+        warm = warmth(found, frame)
         if warm is None:
             return 0.0
         return self._config.cold if warm < self._config.least_warm else self._config.warm
@@ -348,13 +343,6 @@ def measurement_boxes(measurement: FloorMeasurement, view: Viewpoint, count: int
     states = measurement.initiate(range(count))
     states.mean[:, 6] = np.log(np.maximum(measurement.heads_m, 0.5) / STATURE_M)
     return predicted_boxes(states, view, np.full(count, _USUAL_RATIO))
-
-
-def _middle(found: PreDetection, view: RgbdView) -> Floats:
-    """Return the position (2,) of a body's middle, which is behind the visible surface."""
-    deeper = 1.0 + view.body_m / math.hypot(found.x_m, found.z_m)
-    at = np.array([found.x_m * deeper]), np.array([found.z_m * deeper])
-    return np.asarray(view.geometry.on_floor(*at)[0])
 
 
 def _level(places_m: Floats, origin_m: Position) -> Floats:

@@ -29,11 +29,16 @@ _LEAST_PIXELS: Final = 12
 
 def is_warm(found: PreDetection, frame: Frame) -> bool:
     """Return whether a detection in the depth image is a person, by its temperature."""
+    share = warmth(found, frame)
+    return share is not None and share > LEAST_SHARE
+
+
+def warmth(found: PreDetection, frame: Frame) -> float | None:
+    """Return the share of a detection's pixels that are warm; None where the thermal image lacks them."""
     pixels = grid(found.box, _WARM_COLUMNS, _WARM_ROWS, frame)
     z_m = depths_at(pixels, frame)
     own = (z_m > 0.0) & (np.abs(z_m - found.z_m) < _REACH_M)
-    share = warm_share(pixels[own], z_m[own], frame)
-    return share is not None and share > LEAST_SHARE
+    return warm_share(pixels[own], z_m[own], frame)
 
 
 def warm_share(pixels: NDArray[np.int64], z_m: Floats, frame: Frame) -> float | None:

@@ -192,8 +192,3 @@ class Sensor(Protocol):
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: tuple[int, ...]) -> None:
         """Note which detection, by the row of the track, was found to be of which track."""
         ...
-
-
-def explanations_of(explanation: object) -> tuple[object, ...]:
-    """Return the explanations in the `parts` of a joined one; none for a single explanation."""
-    return getattr(explanation, "parts", ())
