@@ -279,7 +279,7 @@ def _thermal_depth(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     "attentive",
     scope="the situation-awareness thesis, chapter 5, and beyond",
     summary="`contour` with re-identification: it learns each person's appearance and restores the id of a "
-    "person who comes back after any time; unknown people get new ids. A following robot keeps searching "
+    "person who comes back within ten minutes; unknown people get new ids. A following robot keeps searching "
     "until it sees its person again.",
 )
 def _attentive(rng: "np.random.Generator") -> Tracker:
