@@ -126,7 +126,9 @@ def test_version_and_addresses_stand_in_one_place() -> None:
 
 
 def test_the_conda_recipe_asks_for_what_the_package_does() -> None:
-    conda = {"matplotlib": "matplotlib-base", "opencv-python-headless": "opencv"}
+    conda = {"matplotlib": "matplotlib-base", "msgpack": "msgpack-python"} | {
+        "opencv-python-headless": "opencv"
+    }
     own = {Requirement(line) for line in PROJECT["dependencies"]}
     wanted = {f"{conda.get(r.name, r.name)}{r.specifier}" for r in own if r.name != "pybullet-arm64"}
     recipe = (ROOT / "conda.recipe" / "recipe.yaml").read_text(encoding="utf-8")

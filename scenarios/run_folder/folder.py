@@ -2,7 +2,7 @@
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
@@ -10,7 +10,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
-import pyarrow.parquet as pq
 import yaml
 
 from peopleboy.bad_input import BadInput
@@ -33,19 +32,17 @@ from peopleboy.scenarios.run_folder.image_files import (
 )
 from peopleboy.scenarios.run_folder.run_files import truth_files
 from peopleboy.scenarios.run_folder.run_tables import (
-    LOG,
-    ROBOT,
-    THINGS,
-    TRACKS,
-    TRUTH,
+    ROBOT_TABLE,
+    THINGS_TABLE,
+    TRACKS_TABLE,
     Row,
-    TableLog,
-    recover_table,
+    RunTables,
+    recover_tables,
     robot_row,
     thing_rows,
     track_rows,
     truth_rows,
-    whole_lines,
+    truth_table,
 )
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
 from peopleboy.sim.cameras.kinds import Stored, with_boxes
@@ -62,33 +59,6 @@ def further_cameras(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
     return tuple(name for name in with_boxes(cameras) if name != "thermal")
 
 
-class CameraTruth:
-    """Write the ground truth of one camera, for the frames in which it took an image.
-
-    Args:
-        folder: folder of the run.
-        camera: name of the camera.
-    """
-
-    def __init__(self, folder: Path, camera: str) -> None:
-        text, table = truth_files(folder, camera)
-        self._lines = open_text(text)
-        self._camera = camera
-        self._rows = TableLog(table, TRUTH)
-
-    def write(self, tick: Tick) -> None:
-        """Write the ground truth of one tick."""
-        if self._camera in tick.truths:
-            self._rows.write(truth_rows(tick, self._camera))
-            self._lines.writelines(gt_lines(tick, self._camera))
-            self._lines.flush()
-
-    def save(self) -> None:
-        """Complete text and table."""
-        self._lines.close()
-        self._rows.save()
-
-
 def things_camera(cameras: Mapping[str, CameraConfig]) -> str:
     """Return the camera whose image the table of objects refers to: the first depth camera, or `thermal`."""
     return next(iter(depth_cameras(cameras)), "thermal")
@@ -99,34 +69,26 @@ def depth_cameras(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
     return tuple(name for name, config in cameras.items() if isinstance(config, DepthConfig))
 
 
-class ThingFiles:
-    """Write the ground truth of objects, for a run in which some are moved.
+class BackgroundFiles:
+    """Collect what depth cameras see without people, over a run with images.
 
     Args:
         folder: folder truth/ of the run.
         cameras: cameras of the robot.
-        frames: whether to write images, and with them the backgrounds of depth cameras.
     """
 
-    def __init__(self, folder: Path, cameras: Mapping[str, CameraConfig], *, frames: bool) -> None:
+    def __init__(self, folder: Path, cameras: Mapping[str, CameraConfig]) -> None:
         self._folder = folder
-        self._camera = things_camera(cameras)
-        self._rows: TableLog | None = None
-        self._backgrounds = {name: Backgrounds() for name in depth_cameras(cameras)} if frames else {}
+        self._backgrounds = {name: Backgrounds() for name in depth_cameras(cameras)}
 
-    def write(self, tick: Tick) -> None:
-        """Collect the ground truth of one tick."""
-        if tick.truth.things and self._camera in tick.truths:
-            self._rows = self._rows or TableLog(self._folder / "things.parquet", THINGS)
-            self._rows.write(thing_rows(tick, self._camera))
+    def update(self, tick: Tick) -> None:
+        """Add the ground truth of one tick."""
         for name, backgrounds in self._backgrounds.items():
             if name in tick.truths:
                 backgrounds.update(tick.truths[name])
 
     def save(self) -> None:
-        """Complete the table, and write the backgrounds."""
-        if self._rows is not None:
-            self._rows.save()
+        """Write the images."""
         for name, backgrounds in self._backgrounds.items():
             for kind, depth in (("clean", backgrounds.clean), ("ever", backgrounds.ever)):
                 if depth is not None:
@@ -137,9 +99,9 @@ class RunFolder:
     """Write one run; use it as a context manager.
 
     The status in `run.json` is "running" from the start, "complete" after `complete`, "cut off" if the block
-    is left by an interrupt, and "failed" with the message if it is left by an error. Text files and the logs
-    of tables are flushed every frame, the robot's after all others and after the frame's images: a frame of
-    which it has a row is whole. What a killed process left is completed by `settle_run`.
+    is left by an interrupt, and "failed" with the message if it is left by an error. Text files are flushed
+    every frame, then images are written, then the frame's record in the log of tables: a frame that has one
+    is whole. What a killed process left is completed by `settle_run`.
     """
 
     def __init__(
@@ -164,13 +126,15 @@ class RunFolder:
         (path / "truth").mkdir()
         if frames:
             make_image_folders(path, cameras)
-        self._truths = [CameraTruth(path, name) for name in (THERMAL, *further_cameras(cameras))]
-        self._things = ThingFiles(path / "truth", cameras, frames=frames)
+        self._truths = {
+            name: open_text(truth_files(path, name)[0]) for name in (THERMAL, *further_cameras(cameras))
+        }
+        self._things_camera = things_camera(cameras)
+        self._backgrounds = BackgroundFiles(path / "truth", cameras) if frames else None
         self._results = {THERMAL: open_text(path / "tracks.txt")}
         self._events = open_text(path / "events.jsonl")
         hold(self._events)
-        self._tracks = TableLog(path / "tracks.parquet", TRACKS)
-        self._robot = TableLog(path / "robot.parquet", ROBOT)
+        self._tables = RunTables(path, self._truths)
         self._images = BackgroundQueue()
 
     def __enter__(self) -> "RunFolder":
@@ -197,19 +161,14 @@ class RunFolder:
             BadInput: an image of this tick or of the one before cannot be written.
         """
         self._images.flush()
-        self._tracks.write(track_rows(tick))
-        for truth in self._truths:
-            truth.write(tick)
-        self._things.write(tick)
-        self._write_boxes(tick)
-        self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
-        self._events.flush()
-        row = robot_row(tick)
-        if self._writes_frames:
-            images = images_to_write(self.path, tick.frame, tick.observation, self._cameras)
-            self._images.add(partial(self._commit, row, list(images)))
+        self._write_lines(tick, events)
+        rows = self._rows(tick)
+        if self._backgrounds is None:
+            self._commit(rows)
         else:
-            self._commit(row)
+            self._backgrounds.update(tick)
+            images = images_to_write(self.path, tick.frame, tick.observation, self._cameras)
+            self._images.add(partial(self._commit, rows, list(images)))
 
     def complete(self, metrics: Mapping[str, Any]) -> None:
         """Write the metrics, and mark the run as complete."""
@@ -225,31 +184,40 @@ class RunFolder:
         self._images.flush()
         self._save()
 
-    def _commit(self, row: Row, images: Sequence[tuple[Path, Stored]] = ()) -> None:
-        """Write the images of a frame, and mark it as whole by its row about the robot."""
+    def _commit(self, rows: Mapping[str, list[Row]], images: Sequence[tuple[Path, Stored]] = ()) -> None:
+        """Write the images of a frame, and mark it as whole by its rows."""
         for path, image in images:
             write_png(path, image)
-        self._robot.write([row])
+        self._tables.write(rows)
         self._frames += 1
 
     def _save(self) -> None:
-        """Complete texts and tables, the robot's last; a second call does nothing."""
-        for file in self._results.values():
+        """Complete texts and tables; a second call does nothing."""
+        for file in (*self._results.values(), *self._truths.values()):
             file.close()
-        for truth in self._truths:
-            truth.save()
-        self._things.save()
-        self._tracks.save()
-        self._robot.save()
+        if self._backgrounds is not None:
+            self._backgrounds.save()
+        self._tables.save()
 
-    def _write_boxes(self, tick: Tick) -> None:
-        """Write the tracker's boxes by camera; a camera's file is created with its first box."""
+    def _rows(self, tick: Tick) -> dict[str, list[Row]]:
+        """Return the rows of a tick by table; cameras that took no image have none."""
+        rows = {truth_table(name): truth_rows(tick, name) for name in self._truths if name in tick.truths}
+        if tick.truth.things and self._things_camera in tick.truths:
+            rows[THINGS_TABLE] = thing_rows(tick, self._things_camera)
+        return rows | {TRACKS_TABLE: track_rows(tick), ROBOT_TABLE: [robot_row(tick)]}
+
+    def _write_lines(self, tick: Tick, events: Sequence[Mapping[str, Any]]) -> None:
+        """Write boxes by camera, and events; a camera's file of tracks is created with its first box."""
         for camera in {camera for track in tick.tracks for camera in track.boxes} - set(self._results):
             (self.path / "tracks").mkdir(exist_ok=True)
             self._results[camera] = open_text(self.path / "tracks" / f"{camera}.txt")
-        for camera, file in self._results.items():
-            file.writelines(result_lines(tick, camera))
-            file.flush()
+        lines = [(file, result_lines(tick, camera)) for camera, file in self._results.items()]
+        lines += [(file, gt_lines(tick, name)) for name, file in self._truths.items() if name in tick.truths]
+        lines.append((self._events, [json.dumps(dict(event)) + "\n" for event in events]))
+        for file, added in lines:
+            if added:
+                file.writelines(added)
+                file.flush()
 
 
 def _write_json(path: Path, content: Mapping[str, Any]) -> None:
@@ -271,20 +239,16 @@ def settle_run(folder: Path, about: Mapping[str, Any]) -> dict[str, Any]:
     """
     if is_held(folder / "events.jsonl"):
         raise BadInput(f"{folder}: this run is still going on; wait until it has ended")
-    log, table = (folder / f"robot.parquet{end}" for end in (LOG, ""))
+    cameras = [
+        text.name.removesuffix("gt.txt").removesuffix(".") or THERMAL
+        for text in (folder / "truth").glob("*gt.txt")
+    ]
     try:
-        # The robot's log is removed after all others: without it, all else is complete.
-        frames = sum(1 for _ in whole_lines(log)) if log.is_file() else _rows_of(table)
+        frames = recover_tables(folder, cameras)
         _trim_texts(folder, frames)
-        for text in (folder / "truth").glob("*gt.txt"):
-            camera = text.name.removesuffix("gt.txt").removesuffix(".") or THERMAL
-            recover_table(truth_files(folder, camera)[1], TRUTH, frames)
-        recover_table(folder / "truth" / "things.parquet", THINGS, frames)
-        recover_table(folder / "tracks.parquet", TRACKS, frames)
         for image in folder.glob("*/*.png"):
             if image.stem.isdecimal() and int(image.stem) > frames:
                 image.unlink()
-        recover_table(table, ROBOT, frames)
         for part in folder.glob(f"**/*{PART}"):
             part.unlink()
         settled = {**about, "status": "cut off", "frames": frames}
@@ -292,23 +256,26 @@ def settle_run(folder: Path, about: Mapping[str, Any]) -> dict[str, Any]:
     except OSError as error:
         reason = error.strerror or error
         raise BadInput(f"{folder}: this run was killed, and cannot be completed here: {reason}") from error
+    except (ValueError, TypeError, LookupError, AttributeError) as error:
+        raise BadInput(f"{folder}: this run was killed, and its files were changed; run it again") from error
     return settled
 
 
-def _rows_of(table: Path) -> int:
-    with table.open("rb") if table.is_file() else nullcontext() as file:
-        return 0 if file is None else pq.read_metadata(file).num_rows
+def _whole_lines(path: Path) -> Iterator[str]:
+    """Read the lines of a text file, without a last one that is incomplete."""
+    with path.open(encoding="utf-8") as file:
+        yield from (line for line in file if line.endswith("\n"))
 
 
 def _trim_texts(folder: Path, frames: int) -> None:
     """Remove incomplete lines, and those of later frames."""
     texts = [folder / "tracks.txt", *(folder / "tracks").glob("*.txt"), *(folder / "truth").glob("*gt.txt")]
     for text in (text for text in texts if text.is_file()):
-        kept = (line for line in whole_lines(text) if int(line.partition(",")[0]) <= frames)
+        kept = (line for line in _whole_lines(text) if int(line.partition(",")[0]) <= frames)
         write_aside(text, "".join(kept).encode())
     events = folder / "events.jsonl"
     if events.is_file():
-        kept = (line for line in whole_lines(events) if json.loads(line)["frame"] <= frames)
+        kept = (line for line in _whole_lines(events) if json.loads(line)["frame"] <= frames)
         write_aside(events, "".join(kept).encode())
 
 

@@ -27,12 +27,14 @@ from peopleboy.scenarios.run_folder.run_tables import (
     is_in_image,
     read_explanation,
     track_of,
+    truth_table,
 )
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.floor import Places
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 from peopleboy.tracker.evaluation.sequence import Rows, TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Box, Status, Track
 
 _AGAIN = "run the scenario again"
@@ -193,9 +195,8 @@ def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Ta
 
 def truth_files(folder: Path, camera: str) -> tuple[Path, Path]:
     """Return the paths of the text and the table of a camera's ground truth in a run's folder."""
-    if camera == "thermal":
-        return folder / "truth" / "gt.txt", folder / "truth.parquet"
-    return folder / "truth" / f"{camera}.gt.txt", folder / "truth" / f"{camera}.parquet"
+    text = "gt.txt" if camera == THERMAL else f"{camera}.gt.txt"
+    return folder / "truth" / text, folder / truth_table(camera)
 
 
 def true_boxes(text: Path, table: Path, kind: BoxKind) -> TrueBoxes:

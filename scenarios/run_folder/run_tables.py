@@ -1,13 +1,13 @@
 """Define the parquet tables of a run: truth, tracks, robot and objects, with one row per frame and entity."""
 
-import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+import msgpack
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -277,8 +277,7 @@ LOCAL: Final = LocalFileSystem()
 
 _BLOCK_ROWS: Final = 512
 _GROUP_ROWS: Final = 32768
-LOG: Final = ".log"
-"""Suffix of the log of a table that is being written."""
+_LOG: Final = "rows.log"
 
 
 class TableFile:
@@ -298,6 +297,11 @@ class TableFile:
         self._rows: list[Row] = []
         self._blocks: list[pa.Table] = []
         self._writer: pq.ParquetWriter | None = None
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it has no rows."""
+        return not (self._rows or self._blocks or self._writer)
 
     def add(self, rows: Iterable[Row]) -> None:
         """Append rows."""
@@ -328,58 +332,86 @@ class TableFile:
         self._blocks = []
 
 
-class TableLog:
-    """Write a table of a run as it goes: a JSON line per row, flushed, in a log beside the table.
+class RunTables:
+    """Write all tables of a run as it goes; every frame is flushed to a log before it counts.
 
-    The log of a process that was killed is converted by `recover_table`.
+    The log has one record (msgpack) per frame: the rows of each table. It is removed when the tables are
+    complete; what a killed process left is converted by `recover_tables`.
 
     Args:
-        path: the table.
-        schema: its columns.
+        folder: folder of the run.
+        cameras: cameras with ground truth.
     """
 
-    def __init__(self, path: Path, schema: pa.Schema) -> None:
-        self._table = TableFile(path, schema)
-        self._path = path.with_name(path.name + LOG)
-        self._log = self._path.open("w", encoding="utf-8")
+    def __init__(self, folder: Path, cameras: Iterable[str]) -> None:
+        self._tables = _table_files(folder, cameras)
+        self._path = folder / _LOG
+        self._log = self._path.open("wb")
+        self._pack = msgpack.Packer(default=_plain).pack
 
-    def write(self, rows: Sequence[Row]) -> None:
-        """Append rows, and flush them."""
-        self._log.writelines(f"{_TO_JSON.encode(row)}\n" for row in rows)
+    def write(self, rows: Mapping[str, list[Row]]) -> None:
+        """Write one frame: rows by table."""
+        self._log.write(self._pack(rows))
         self._log.flush()
-        self._table.add(rows)
+        _add(self._tables, rows)
 
     def save(self) -> None:
-        """Complete the table, and remove the log; a second call does nothing."""
+        """Complete the tables, and remove the log; a second call does nothing."""
         if not self._log.closed:
-            self._table.close()
+            _close(self._tables)
             self._log.close()
             self._path.unlink()
 
 
+def recover_tables(folder: Path, cameras: Iterable[str]) -> int:
+    """Convert the log of a run whose process was killed, if there is one; return the number of frames.
+
+    Raises:
+        OSError: the folder cannot be written to.
+        ValueError: log or table are damaged.
+    """
+    log, robot = folder / _LOG, folder / ROBOT_TABLE
+    if not log.is_file():
+        return pq.read_metadata(robot, filesystem=LOCAL).num_rows if robot.is_file() else 0
+    tables, frames = _table_files(folder, cameras), 0
+    with log.open("rb") as file:
+        for rows in msgpack.Unpacker(file):  # ends before a record that is incomplete
+            _add(tables, rows)
+            frames += 1
+    _close(tables)
+    log.unlink()
+    return frames
+
+
+ROBOT_TABLE: Final = "robot.parquet"
+TRACKS_TABLE: Final = "tracks.parquet"
+THINGS_TABLE: Final = "truth/things.parquet"
+
+
+def truth_table(camera: str) -> str:
+    """Return the path of a camera's table of ground truth in the folder of a run."""
+    return "truth.parquet" if camera == THERMAL else f"truth/{camera}.parquet"
+
+
+def _table_files(folder: Path, cameras: Iterable[str]) -> dict[str, TableFile]:
+    schemas = {ROBOT_TABLE: ROBOT, TRACKS_TABLE: TRACKS, THINGS_TABLE: THINGS}
+    schemas |= {truth_table(camera): TRUTH for camera in cameras}
+    return {name: TableFile(folder / name, schema) for name, schema in schemas.items()}
+
+
+def _add(tables: Mapping[str, TableFile], rows: Mapping[str, list[Row]]) -> None:
+    for name, added in rows.items():
+        tables[name].add(added)
+
+
+def _close(tables: Mapping[str, TableFile]) -> None:
+    for name, table in tables.items():
+        if name != THINGS_TABLE or not table.is_empty:  # which only runs with moved objects have
+            table.close()
+
+
 def _plain(value: Any) -> Any:
     return value.item()  # of a NumPy scalar
-
-
-_TO_JSON: Final = json.JSONEncoder(separators=(",", ":"), default=_plain)
-
-
-def whole_lines(path: Path) -> Iterator[str]:
-    """Read the lines of a text file, without a last one that is incomplete."""
-    with path.open(encoding="utf-8") as file:
-        yield from (line for line in file if line.endswith("\n"))
-
-
-def recover_table(path: Path, schema: pa.Schema, frames: int) -> None:
-    """Convert the log of a table, if there is one, up to this frame."""
-    log = path.with_name(path.name + LOG)
-    if log.is_file():
-        table = TableFile(path, schema)
-        for line in whole_lines(log):
-            if (row := json.loads(line))["frame"] <= frames:
-                table.add([row])
-        table.close()
-        log.unlink()
 
 
 def write_table(path: Path, rows: list[Row], schema: pa.Schema) -> None:
