@@ -21,5 +21,5 @@ def _cell(value: float | None, column: ResultColumn) -> str:
 
 
 def _about(one: ResultTable) -> str:
-    measured = f"Measured on {one.recorded} by `{one.command}`, {one.seeds}."
+    measured = f"Measured on {one.recorded} with `{one.command}` on {one.seeds}."
     return f"> {measured} {one.chosen_on}".rstrip()
