@@ -309,8 +309,10 @@ def _amount(plan: Plan, papers: Set[str], repeats: Set[int]) -> str:
         turns=2 * plan.drives,
         repeats=f"{most} repeats"
         if least == most
-        else f"{least} to {most} repeats of each part, as stated there",
-        runs=", ".join(f"{name}: {len(runs)} runs" for name, runs in plan.suites.items()),
+        else f"{least} to {most} repeats (stated with each part)",
+        runs=", ".join(
+            f"{len(runs)} run{'s' if len(runs) != 1 else ''} of {name}" for name, runs in plan.suites.items()
+        ),
     )
 
 

@@ -139,4 +139,4 @@ def test_a_sweep_of_one_repeat_keeps_what_each_film_does_through_the_shipped_run
     again = back.samples[Line("100", "default")]["CR"]
     assert isinstance(again, Jackknife)
     np.testing.assert_allclose(again.by_sequence, found.by_sequence, atol=1e-3)
-    assert "1 repeat, intervals over 10 clips" in page_text([section(back)], head)
+    assert "1 repeat, intervals over 10 sequences" in page_text([section(back)], head)
