@@ -307,9 +307,7 @@ def _amount(plan: Plan, papers: Set[str], repeats: Set[int]) -> str:
         share=share,
         **{name: len(getattr(plan, name)) for name in ("sets", "scenes", "presets")},
         turns=2 * plan.drives,
-        repeats=f"{most} repeats"
-        if least == most
-        else f"{least} to {most} repeats (stated with each part)",
+        repeats=f"{most} repeats" if least == most else f"{least} to {most} repeats (stated with each part)",
         runs=", ".join(
             f"{len(runs)} run{'s' if len(runs) != 1 else ''} of {name}" for name, runs in plan.suites.items()
         ),

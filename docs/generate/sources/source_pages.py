@@ -29,6 +29,11 @@ def overview(run: SourceRun) -> str:
         )
         for part in map(section, run.outcomes)
     ]
-    head = ("part", "content", "repeats", *(f"{what}, {who}" for what in ("claims", "values") for who in _WHO))
+    head = (
+        "part",
+        "content",
+        "repeats",
+        *(f"{what}, {who}" for what in ("claims", "values") for who in _WHO),
+    )
     facts = table(("property", "value"), [*run.head.lines, ("Amount", run.head.amount)])
     return f"{facts}\n{table(head, rows)}"
