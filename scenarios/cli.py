@@ -80,8 +80,9 @@ _SETTINGS: Final = {
 def cli() -> None:
     """Simulate, track and evaluate people around a mobile robot.
 
-    Scenarios script people and a robot with thermal, colour and depth cameras. `peopleboy run crossing_2`
-    runs one, with exact ground truth for every image. `peopleboy COMMAND --help` describes a command.
+    A scenario describes people and a robot with thermal, colour and depth cameras. Try `peopleboy run
+    crossing_2`: it simulates a scenario, tracks its people, and records exact ground truth for every image.
+    `peopleboy COMMAND --help` describes a command.
     """
 
 

@@ -19,7 +19,7 @@ def commands() -> str:
         (f"[`{name}`](#peopleboy-{name})", cli.commands[name].get_short_help_str(limit=200)) for name in names
     ]
     sections = [_section(cli.commands[name], context, "##") for name in names]
-    return "\n".join([table(("command", "what it does"), links), *sections])
+    return "\n".join([table(("command", "description"), links), *sections])
 
 
 def _section(command: click.Command, parent: click.Context, mark: str) -> str:
@@ -27,7 +27,7 @@ def _section(command: click.Command, parent: click.Context, mark: str) -> str:
     context = click.Context(command, info_name=command.name, parent=parent)
     usage = f"{context.command_path} {' '.join(command.collect_usage_pieces(context))}"
     options = [_option(option, context) for option in command.params if isinstance(option, click.Option)]
-    listed = table(("option", "what it is for"), options) if options else ""
+    listed = table(("option", "description"), options) if options else ""
     about = inspect.cleandoc(command.help or "")
     section = f"{mark} {context.command_path}\n\n```text\n{usage}\n```\n\n{about}\n\n{listed}"
     if not isinstance(command, click.Group):

@@ -29,11 +29,11 @@ from peopleboy.scenarios.commands.completion import (
 if TYPE_CHECKING:
     from peopleboy.settings import Setting
 
-SEED = "Seed of all random numbers.  [default: 0, or the run's seed if you give a run's scenario.yaml]"
-TRACKERS = f"{', '.join(TRACKER_NAMES)}; truth for the ground truth; or module:Class for your own"
-TRACKER = f"Tracker: {TRACKERS}.  [default: the scenario's, or detection]"
-BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)}; or module:Class for your own"
-BEHAVIOUR = f"Behaviour that drives the robot: {BEHAVIOURS}.  [default: the scenario's]"
+SEED = "Random seed.  [default: 0, or the seed of the run if SCENARIO is a run's scenario.yaml]"
+TRACKERS = f"{', '.join(TRACKER_NAMES)}, truth (ground-truth boxes) or module:Class (your own)"
+TRACKER = f"Tracker to use: {TRACKERS}.  [default: the scenario's tracker, or detection]"
+BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)} or module:Class (your own)"
+BEHAVIOUR = f"Behaviour that drives the robot: {BEHAVIOURS}.  [default: the scenario's behaviour]"
 
 MOST_SEEDS: Final = 100_000
 
@@ -275,8 +275,8 @@ def british(word: str) -> str:
     return word
 
 
-_COUNT = "Number of processes; 1 runs everything in this process.  [default: one per core]"
-_ADDRESS = "Run on the cluster of this Dask scheduler instead."
+_COUNT = "Number of worker processes; 1 runs everything in the current process.  [default: one per core]"
+_ADDRESS = "Address of a Dask scheduler, to run on its cluster instead."
 
 
 def workers_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -305,15 +305,15 @@ def seeds_options(count: int, first: int = 0) -> Callable[[Command], Command]:
             metavar="K",
             type=WholeNumber(min=0),
             default=first,
-            show_default=str(first),
-            help="First seed; the others follow it.",
+            show_default=True,
+            help="First seed; the other seeds follow in sequence.",
         )
         number = click.option(
             "--seeds",
             metavar="N",
             type=WholeNumber(1, MOST_SEEDS),
             default=count,
-            show_default=str(count),
+            show_default=True,
             help="Number of seeds.",
         )
         return cast(Command, number(start(with_seeds)))
@@ -326,7 +326,7 @@ frame_cache_option = click.option(
     type=PATH,
     default=Path("runs/films"),
     show_default=True,
-    help="Folder that caches rendered frames; on a cluster, a folder that all machines share.",
+    help="Folder for cached frames; on a cluster, all machines must share it.",
 )
 
 
@@ -375,7 +375,7 @@ def output_options(command: Callable[..., None]) -> Callable[..., None]:
             command(*arguments, output=output, **options)
 
     as_json = click.option("--json", "as_json", is_flag=True, help="Print the results as one JSON document.")
-    quiet = click.option("--quiet", is_flag=True, help="Print errors only, and the JSON of --json.")
+    quiet = click.option("--quiet", is_flag=True, help="Print only errors and the JSON of --json.")
     return as_json(quiet(with_output))
 
 
@@ -415,7 +415,7 @@ def _verbose_option() -> click.Option:
         is_flag=True,
         expose_value=False,
         callback=configure,
-        help="Log what the command does to standard error.",
+        help="Log progress and details to standard error.",
     )
 
 

@@ -37,7 +37,7 @@ FAILED = 1
 @options_of(
     "scenarios.export.make_dataset:SetOptions",
     *("frames", "random_worlds", "out", "tracker"),
-    tracker=f"Tracker of robots that follow people: {TRACKERS}.  [default: truth]",
+    tracker=f"Tracker for robots that follow people: {TRACKERS}.  [default: truth]",
 )
 @seeds_options(100)
 @workers_options
@@ -51,10 +51,12 @@ def render(
 ) -> None:
     """Render a data set with splits, checks and a datasheet.
 
-    A data set contains scenarios with many seeds each, or, with --random-worlds, one random world per seed,
-    with its own place, objects, temperatures, people and cameras. With 7 seeds or more, every split has runs.
-    An interrupted call resumes when you run the command again. If you add --seeds later, the data set grows
-    and all earlier runs stay in their splits.
+    The data set contains the given scenarios, with many seeds each. With --random-worlds, it contains one
+    random world per seed instead, with its own place, objects, temperatures, people and cameras. With at
+    least 7 seeds, every split contains runs.
+
+    If rendering is interrupted, run the command again to resume it. If you run it again with more --seeds,
+    the data set grows, and all earlier runs stay in their splits.
     """
     from peopleboy.scenarios.export.make_dataset import render_set
 
@@ -96,23 +98,27 @@ class FormatName(click.Choice[str]):
 
 @click.command(cls=FieldsCommand)
 @click.argument("runs", nargs=-1, required=True, type=PATH)
-@click.option("--format", "form", type=FormatName(), required=True, help="Format to write.")
+@click.option("--format", "form", type=FormatName(), required=True, help="Output format.")
 @options_of(
     "scenarios.export.export_runs:ExportOptions",
     *("camera", "least_px", "boxes", "epoch", "ros_distro", "out", "overwrite"),
-    out="Output folder.  [default: beside the run, RUN-FORMAT(-CAMERA); for several runs, export-FORMAT]",
+    out="Output folder.  [default: RUN-FORMAT(-CAMERA) next to the run, or export-FORMAT for several runs]",
 )
 @output_options
 def export(runs: Sequence[Path], form: str, given: "GivenOptions[ExportOptions]", output: Output) -> None:
     """Export runs to the formats of other tools.
 
-    RUNS are folders of runs, or folders that contain such folders. Runs of a rendered data set are exported
-    to coco, yolo and mot by split, as listed in its folder `splits`; export.json lists each split's runs.
+    RUNS are run folders, or folders that contain run folders. For a rendered data set, coco, yolo and mot are
+    exported by split, as listed in the folder `splits` of the data set. export.json lists the runs of each
+    split.
 
-    mot: MOTChallenge, for TrackEval. coco: masks, boxes and keypoints. images: per-pixel labels of person and
-    body part, and true depth, for each image. yolo, yolo-pose: boxes, and keypoints, for Ultralytics. viper:
-    ViPER XML. mcap: ROS 2 bags. mp4: videos. coco, images and mcap contain every camera. Images and masks are
-    rendered again and are bit-identical to those of the run. mcap needs the package rosbags, mp4 needs av.
+    mot is the MOTChallenge format, which TrackEval reads. coco contains masks, boxes and keypoints. images
+    contains the person and body part of each pixel, and true depth, for each image. yolo contains boxes for
+    Ultralytics, and yolo-pose adds keypoints. viper is ViPER XML. mcap is a ROS 2 bag and needs the package
+    rosbags. mp4 contains videos and needs the package av.
+
+    coco, images and mcap contain all cameras. Images and masks are rendered again, and are bit-identical to
+    those of the run.
     """
     from peopleboy.scenarios.export.export_runs import export as write
     from peopleboy.scenarios.export.export_runs import notes_on

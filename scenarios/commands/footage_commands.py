@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 
 _TRACKERS = (
-    "detection, contour, learned, thesis, colour, thermal or paper; rgbd or rgbd-printed with --depth; "
-    "or module:Class for your own"
+    "detection, contour, learned, thesis, colour, thermal, paper, rgbd or rgbd-printed (both with --depth), "
+    "or module:Class (your own)"
 )
 
 
@@ -39,7 +39,7 @@ _TRACKERS = (
 @click.option(
     "--scale",
     metavar="GAIN,OFFSET",
-    help="Convert 16-bit counts to degC: 'centikelvin', or degC = GAIN * counts + OFFSET.",
+    help="Conversion of 16-bit counts to degC: degC = GAIN * counts + OFFSET, or the word centikelvin.",
 )
 @options_of(
     "scenarios.footage.options:RgbdOptions", "depth", "m_per_count", "odometry", into="rgbd", is_optional=True
@@ -55,12 +55,13 @@ _TRACKERS = (
 @options_of(
     "scenarios.footage.options:TrackOptions",
     *("rate_hz", "tracker", "truth", "boxes", "seed", "video", "overwrite"),
-    tracker=f"Tracker: {_TRACKERS}.  [default: detection; rgbd with --depth]",
+    tracker=f"Tracker to use: {_TRACKERS}.  [default: detection, or rgbd with --depth]",
 )
 @click.option(
     "--start",
     metavar="X,Y,W,H|truth",
-    help="Initialise the tracker with the box of a person in the first image.",
+    help="Initialise the tracker with the box of a person in the first image, in pixels or from the "
+    "ground truth.",
 )
 @output_options
 def track(
@@ -76,10 +77,12 @@ def track(
 ) -> None:
     """Track people in recorded thermal images or in a video.
 
-    FOLDER contains PNG, TIFF, JPEG or BMP images of 8 or 16 bit. Writes tracks.txt (MOTChallenge),
-    tracks.parquet, run.json and contact_sheet.png, and with ground truth metrics.json. Without known
-    temperatures, grey levels are stretched to the contrast of the scene. With --depth and --depth-scale,
-    people are tracked in colour and depth images, and tracks.parquet has their positions on the floor.
+    FOLDER contains PNG, TIFF, JPEG or BMP images with 8 or 16 bits. The command writes tracks.txt
+    (MOTChallenge), tracks.parquet, run.json, contact_sheet.png and, if there is ground truth, metrics.json.
+    If temperatures are unknown, grey levels are stretched to the contrast of the scene.
+
+    With --depth and --depth-scale, people are tracked in colour and depth images, and tracks.parquet contains
+    their floor positions.
     """
     from peopleboy.scenarios.footage.options import RGBD_TRACKER, parse_start
     from peopleboy.scenarios.footage.track_footage import track_footage
@@ -133,20 +136,22 @@ def _print(tracked: "Tracked", options: "TrackOptions", output: Output) -> None:
 @options_of(
     "scenarios.finished_runs.import_tracks:TrackImport",
     *("name", "camera", "out", "boxes", "record", "overwrite"),
-    out="Output folder.  [default: beside RUN, SCENARIO-SEED-NAME, or RUN-NAME for a folder of runs]",
+    out="Output folder.  [default: SCENARIO-SEED-NAME next to RUN, or RUN-NAME for a folder of runs]",
 )
 @output_options
 def import_tracks(run: Path, tracks: Path, given: "GivenOptions[TrackImport]", output: Output) -> None:
-    """Import another program's tracks for a run.
+    """Import tracks that another program computed for a run.
 
-    TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1. Frames count the
-    camera's images from 1, as in exports, and boxes are in pixels. Writes a run folder with RUN's scenario
-    and ground truth and these tracks, for report, view, evaluate and export. The tracks' status and floor
-    position are marked as unknown, because MOTChallenge text has neither. The images are rendered again and
-    are bit-identical to those of RUN.
+    TRACKS is a MOTChallenge text file with the columns frame, id, left, top, width, height, confidence, -1,
+    -1, -1. Frames are the camera's images, counted from 1 as in exports, and boxes are in pixels.
 
-    RUN may be a folder of runs, such as the output of a sweep. TRACKS is then a folder with a file
-    SCENARIO-SEED.txt for each run, or with a folder `data` that contains these files.
+    The command writes a run folder with RUN's scenario and ground truth and the imported tracks. You can use
+    this folder with report, view, evaluate and export. The images are rendered again, and are bit-identical
+    to those of RUN. The tracks' status and floor position are marked as unknown, because MOTChallenge files
+    contain neither.
+
+    RUN can also be a folder of runs, such as the output of a sweep. TRACKS is then a folder with one file
+    SCENARIO-SEED.txt per run, directly or in a subfolder `data`.
     """
     from peopleboy.scenarios.finished_runs.import_tracks import import_tracks as take
     from peopleboy.scenarios.finished_runs.import_tracks import imports_by_sequence
@@ -189,19 +194,22 @@ def _title(run: Path, tracks: Path) -> str:
     multiple=True,
     required=True,
     type=PATH,
-    help="A real clip, or a folder of clips; can be given several times.",
+    help="A real clip, or a folder of clips. Can be given several times.",
 )
 @click.option(
-    "--out", type=PATH, default=Path("comparison.html"), show_default=True, help="HTML page to write."
+    "--out", type=PATH, default=Path("comparison.html"), show_default=True, help="Path of the HTML page."
 )
-@click.option("--seed", type=WholeNumber(min=0), default=0, show_default=True, help="Seed of the sampling.")
+@click.option(
+    "--seed", type=WholeNumber(min=0), default=0, show_default=True, help="Random seed for sampling."
+)
 @output_options
 def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, seed: int, output: Output) -> None:
     """Measure the sim-to-real gap of rendered thermal images.
 
-    Reports how well a classifier separates rendered from real images. RENDERED are folders of runs with
-    images, or rendered data sets. A real clip is a folder with 8-bit grey images, directly or in thermal/,
-    and gt.txt in MOTChallenge, VOT or OTB format. Each side needs at least two scenes. Needs scikit-learn.
+    The gap is measured by how well a classifier separates rendered from real images. RENDERED are run folders
+    with images, or rendered data sets. A real clip is a folder with 8-bit grey images, either directly or in
+    a subfolder thermal, and gt.txt in MOTChallenge, VOT or OTB format. The rendered and the real images must
+    each come from at least two scenes. The command needs scikit-learn.
     """
     from peopleboy.scenarios.report.page_parts import check_place
     from peopleboy.scenarios.sim_to_real.compare import compare_images as compare

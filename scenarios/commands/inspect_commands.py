@@ -33,12 +33,14 @@ if TYPE_CHECKING:
 
 @click.command(cls=FieldsCommand)
 @click.argument("folder", metavar="RUN", type=PATH)
-@click.option("--web", is_flag=True, help="Serve the viewer to a browser on this machine, until Ctrl-C.")
+@click.option(
+    "--web", is_flag=True, help="Serve the viewer to a browser on this machine until you press Ctrl-C."
+)
 @click.option(
     "--port",
     type=WholeNumber(1, 65534),
     metavar="N",
-    help="With --web: port of the page; its data uses the next port.  [default: two free ports]",
+    help="Port of the web page with --web; its data uses the next port.  [default: two free ports]",
 )
 def view(folder: Path, web: bool, port: int | None) -> None:
     """Open the recording of a run in the rerun viewer."""
@@ -74,11 +76,11 @@ def view(folder: Path, web: bool, port: int | None) -> None:
 @click.option("--no-thermal", is_flag=True, help="Detect people by shape alone, without the thermal image.")
 @output_options
 def scene_model(folder: Path, no_thermal: bool, given: "GivenOptions[RunOptions]", output: Output) -> None:
-    """Find objects that people moved, from depth images.
+    """Find objects that people moved, using depth images.
 
-    The run needs images: run the scenario with --frames and a camera `depth`. Writes scene.jsonl, one line
-    per frame; static_map.ply, the static scene as a point cloud; background.png, the static scene's depth in
-    the last view; and scene.rrd, which `view` shows together with the run's recording.
+    The run must contain images of a camera named `depth`: run the scenario with --frames. scene.jsonl has one
+    line per frame. static_map.ply is the static scene as a point cloud, and background.png is its depth from
+    the last viewpoint. `view` shows scene.rrd together with the run's recording.
     """
     from peopleboy.scenarios.finished_runs.run_scene_model import FOLDER, SceneModelOptions, run_scene_model
     from peopleboy.scenarios.progress_bar import progress_bar
@@ -100,10 +102,11 @@ def scene_model(folder: Path, no_thermal: bool, given: "GivenOptions[RunOptions]
 @click.argument("words", metavar="[WORD...]", nargs=-1)
 @output_options
 def list_command(words: tuple[str, ...], output: Output) -> None:
-    """List scenarios and suites with duration and people.
+    """List the scenarios and suites of the library.
 
-    With WORDs, lists only entries whose name or description contains all of them, for example
-    `peopleboy list crossing` or `peopleboy list suite`.
+    The list shows the duration, the number of people and a description of each scenario. WORDs limit the list
+    to entries whose name or description contains all of them, for example `peopleboy list crossing` or
+    `peopleboy list suite`.
     """
     from peopleboy.scenarios.files.library import library, suites
 
@@ -137,12 +140,13 @@ def _print_entries(entries: "Sequence[LibraryEntry]") -> None:
 @click.command(cls=FieldsCommand)
 @click.argument("scenario", shell_complete=complete_scenario)
 @click.option("--seed", type=WholeNumber(min=0), help=SEED)
-@click.option("--out", type=PATH, help="Picture to write.  [default: SCENARIO-plan.png]")
+@click.option("--out", type=PATH, help="Path of the image.  [default: SCENARIO-plan.png]")
 @output_options
 def show(scenario: str, seed: int | None, out: Path | None, output: Output) -> None:
-    """Draw the plan of a scenario, with paths and times.
+    """Draw the floor plan of a scenario, with paths and times.
 
-    With --json, also prints the resolved scenario: every value, including those sampled from the seed.
+    With --json, the command also prints the resolved scenario, including all values that are sampled from the
+    seed.
     """
     from peopleboy.scenarios.drawing.draw_plan import draw_plan
     from peopleboy.scenarios.files.load import load_scenario
@@ -169,14 +173,15 @@ def schema() -> None:
 @click.option(
     "--out",
     type=PATH,
-    help="Page to write.  [default: RUN/report.html; report.html in this folder for several runs]",
+    help="Path of the HTML page.  [default: RUN/report.html, or report.html in the current folder for "
+    "several runs]",
 )
 @output_options
 def report(runs: Sequence[Path], out: Path | None, output: Output) -> None:
-    """Write an HTML report on tracks, occlusions and losses.
+    """Write an HTML report on tracks, occlusions and lost tracks.
 
-    Two to four RUNs are shown side by side. More RUNs, or a folder of runs, such as the output of a sweep,
-    are summarised by tracker.
+    The report shows two to four RUNs side by side. For more RUNs, or for a folder of runs such as the output
+    of a sweep, it is a summary by tracker.
     """
     from peopleboy.scenarios.report.report_page import write_report
 
@@ -192,9 +197,10 @@ def report(runs: Sequence[Path], out: Path | None, output: Output) -> None:
 @click.option(
     "--truth",
     type=PATH,
-    help="Ground truth: MOTChallenge, such as RUN/truth/gt.txt, or VOT or OTB for one person.",
+    help="Ground-truth file in MOTChallenge format, such as RUN/truth/gt.txt, or in VOT or OTB format "
+    "for one person.",
 )
-@click.option("--tracks", type=PATH, help="Tracks in MOTChallenge format, such as RUN/tracks.txt.")
+@click.option("--tracks", type=PATH, help="Track file in MOTChallenge format, such as RUN/tracks.txt.")
 @options_of("scenarios.scores.evaluate_runs:ScoreOptions", "min_visible", "camera", "boxes")
 @output_options
 def evaluate(
@@ -206,11 +212,14 @@ def evaluate(
 ) -> None:
     """Score tracks against ground truth, from runs or files.
 
-    RUNS are folders of runs, or folders that contain such folders, such as the output of a suite. Several
-    runs of one tracker give the score over all frames, and mean and standard deviation over the runs. Runs of
-    several trackers are printed side by side, with the difference of each tracker from the first, over runs
-    of the same scenario and seed. Position errors on the floor are in metres; a tracker without boxes is
-    scored on the floor only. If the robot drove among people, comfort metrics are printed as well.
+    RUNS are run folders, or folders that contain run folders, such as the output of a suite. For several runs
+    of one tracker, the command prints the score over all frames, and the mean and standard deviation over the
+    runs.
+
+    Runs of several trackers are compared side by side. The difference of each tracker from the first is
+    computed over runs of the same scenario and seed. Position errors on the floor are in metres, and a
+    tracker without boxes is scored on the floor only. If the robot drove among people, comfort metrics are
+    printed as well.
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in
     from peopleboy.scenarios.scores.by_tracker import (

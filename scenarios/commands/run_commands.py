@@ -39,15 +39,15 @@ if TYPE_CHECKING:
     *("seed", "out", "frames", "tracker", "boxes", "behaviour", "physics"),
     *("renderer", "record", "lossless", "overwrite"),
     seed=SEED,
-    out="Folder of the run.  [default: runs/SCENARIO-SEED, plus -TRACKER, -BEHAVIOUR or -PHYSICS if they "
-    "differ from the scenario's]",
+    out="Output folder.  [default: runs/SCENARIO-SEED, followed by -TRACKER, -BEHAVIOUR or -PHYSICS "
+    "where they differ from the scenario's]",
     tracker=TRACKER,
     behaviour=BEHAVIOUR,
 )
 @click.option(
     "--live",
     is_flag=True,
-    help="Show the run in the rerun viewer while it is running; without a screen, on a local web page.",
+    help="Show the run in the rerun viewer while it is simulated; without a display, on a local web page.",
 )
 @workers_options
 @output_options
@@ -58,11 +58,13 @@ def run(
     workers: "Workers",
     output: Output,
 ) -> None:
-    """Run a scenario: ground truth, tracks, scores, recording.
+    """Run a scenario, and record and score it.
 
-    SCENARIO is a name from `peopleboy list`, the path of a YAML file, or a suite, such as dataset1. Runs of a
-    suite have their own seeds and no recordings; an interrupted suite resumes when you run the command again.
-    --workers and --scheduler are for suites only.
+    SCENARIO is a name from `peopleboy list`, the path of a YAML file, or a suite, such as dataset1. The run
+    folder contains ground truth, tracks, scores and a recording.
+
+    The runs of a suite use the suite's seeds and have no recordings. If a suite is interrupted, run the
+    command again to resume it. --workers and --scheduler apply to suites only.
     """
     from peopleboy.scenarios.files.library import suite_names
     from peopleboy.scenarios.files.load import load_scenario
@@ -189,12 +191,12 @@ _SEEN: Final = 0.3
 @click.option(
     "--random-worlds",
     is_flag=True,
-    help="Run one random world per seed instead of a scenario, as `render` does.",
+    help="Run one random world per seed instead of a scenario, as in `render --random-worlds`.",
 )
 @options_of(
     "scenarios.running.run_options:RunOptions",
     *("out", "tracker", "boxes", "behaviour", "physics", "overwrite"),
-    out="Folder that receives the runs' folders.  [default: runs]",
+    out="Folder for the run folders.  [default: runs]",
     tracker=TRACKER,
     behaviour=BEHAVIOUR,
     overwrite="Replace earlier runs.",
@@ -209,11 +211,11 @@ def sweep(
     workers: "Workers",
     output: Output,
 ) -> None:
-    """Run and score many seeds of a scenario, or random worlds.
+    """Run and score a scenario with many seeds, or random worlds.
 
-    No recordings are written. An interrupted sweep resumes when you run the command again. In random worlds
-    many people are occluded, so scores are printed for all people, and for people with a visible fraction
-    above 30 %.
+    A sweep writes no recordings. If it is interrupted, run the command again to resume it. With
+    --random-worlds, two scores are printed: one for all people, and one for people with a visible fraction
+    above 30 %. The second is useful because many people in random worlds are occluded.
     """
     from peopleboy.scenarios.running.many_runs import sweep as run_seeds
     from peopleboy.scenarios.running.many_runs import sweep_worlds
@@ -248,8 +250,8 @@ def sweep(
     "--controllers",
     default="follow_person,follow_person@truth",
     show_default=True,
-    help="Controllers, separated by commas: a behaviour or module:Class, optionally followed by @ and the "
-    "tracker that it uses instead of the scenario's.",
+    help="Controllers, separated by commas. Each is a behaviour or module:Class, to which you can "
+    "append @TRACKER to replace the scenario's tracker.",
 )
 @seeds_options(20)
 @options_of(
@@ -271,8 +273,8 @@ def compare(
 ) -> None:
     """Compare controllers on the same scenarios.
 
-    Prints metrics with confidence intervals, and writes tables and plots. SCENARIO is single_follow by
-    default. An interrupted comparison resumes when you run the command again.
+    The command prints metrics with confidence intervals, and writes tables and plots. The default SCENARIO is
+    single_follow. If a comparison is interrupted, run the command again to resume it.
     """
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.running.compare_controllers import (

@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 @frame_cache_option
 @output_options
 def datasets(suites: Sequence[str], frame_cache: Path, output: Output) -> None:
-    """Count frames and people of the thesis data sets.
+    """Count frames and people in the data sets of the thesis.
 
-    SUITE is one of dataset1 to dataset4; without a name, all of them. The counts are printed next to those in
+    SUITE is one of dataset1 to dataset4; the default is all of them. The counts are printed next to those in
     table 3.1 of the thesis. Rendered frames are cached.
     """
     from peopleboy.scenarios.scores.suite_table import THESIS
@@ -52,7 +52,7 @@ def datasets(suites: Sequence[str], frame_cache: Path, output: Output) -> None:
 @options_of("studies.reproductions.runner:ReproduceOptions", "paper", "quick", "seeds", "out", "so_far")
 @frame_cache_option
 @workers_options
-@click.option("--list", "lists", is_flag=True, help="List tables and figures without reproducing them.")
+@click.option("--list", "lists", is_flag=True, help="List the tables and figures without reproducing them.")
 @output_options
 def reproduce(
     names: Sequence[str],
@@ -64,9 +64,9 @@ def reproduce(
 ) -> None:
     """Reproduce tables and figures of the publications.
 
-    Prints results next to the published values, and writes one page about them. ID is an entry of `--list`,
-    or its number: 4.9 means figures 4.9a and 4.9b. An interrupted call resumes when you run the command
-    again.
+    The command prints its results next to the published values, and writes a page about them. ID is an entry
+    of `--list` or just its number; for example, 4.9 selects figures 4.9a and 4.9b. If the command is
+    interrupted, run it again to resume.
     """
     from peopleboy.studies.reproductions.catalogue import choose
     from peopleboy.studies.reproductions.runner import (
@@ -92,8 +92,8 @@ def reproduce(
     "--parameter",
     "names",
     multiple=True,
-    help="alpha, kappa, theta, U, B, psi_D, rho, lambda, n_k or rho_o; can be given several times.  "
-    "[default: all]",
+    help="Parameter to tune: alpha, kappa, theta, U, B, psi_D, rho, lambda, n_k or rho_o. Can be "
+    "given several times.  [default: all]",
 )
 @seeds_options(4, first=100)
 @options_of("studies.reproductions.tune:TrainingFilms", "seconds")
@@ -102,7 +102,7 @@ def reproduce(
     type=PATH,
     default=Path("runs/tune"),
     show_default=True,
-    help="Folder of the page, the curves and the results.",
+    help="Folder for the page, the curves and the results.",
 )
 @frame_cache_option
 @workers_options
@@ -118,9 +118,9 @@ def tune(
 ) -> None:
     """Tune the parameters of the thesis trackers, one at a time.
 
-    Each parameter is varied as in sections 4.4 to 7.5 of the thesis, with the tracker of its chapter, and
-    scored by area accuracy. Seeds from 100 on are used for tuning only, never for reported scores. Writes a
-    curve for each parameter and a page. An interrupted call resumes when you run the command again.
+    Each parameter is varied as in sections 4.4 to 7.5 of the thesis, using the tracker of that chapter, and
+    scored by area accuracy. Seeds from 100 upwards are used for tuning only, never for reported scores. The
+    command writes a curve for each parameter, and a page. If it is interrupted, run it again to resume.
     """
     from peopleboy.studies.reproductions.tune import chosen_parameters, print_tuned
     from peopleboy.studies.reproductions.tune import tune as tune_all
@@ -160,10 +160,10 @@ class _Models(click.Group):
 
 @click.command(cls=_Models, subcommand_metavar="MODEL [OPTIONS]")
 def train() -> None:
-    """Train a model of the trackers on rendered sequences.
+    """Train a model for the trackers on rendered sequences.
 
-    Writes samples and weights to a folder; an interrupted call resumes when you run the command again. Needs
-    pip install 'peopleboy[studies]'.
+    The command writes samples and weights to a folder. If training is interrupted, run the command again to
+    resume it. Training needs the extra studies: pip install 'peopleboy[studies]'.
     """
 
 
@@ -171,8 +171,8 @@ def _command(model: str, target: str, help_text: str, specification: type[Any]) 
     """Make the command that trains a model."""
 
     @options_of(f"studies.training.{target}", *(each.name for each in fields(specification)))
-    @click.option("--out", type=PATH, help="Folder of samples and weights.  [default: runs/MODEL]")
-    @click.option("--ship", is_flag=True, help="Replace the weights that the trackers use.")
+    @click.option("--out", type=PATH, help="Folder for samples and weights.  [default: runs/MODEL]")
+    @click.option("--ship", is_flag=True, help="Replace the shipped weights that the trackers use.")
     @workers_options
     @output_options
     def train_model(
@@ -192,14 +192,18 @@ def _command(model: str, target: str, help_text: str, specification: type[Any]) 
 @click.command("export-onnx", cls=FieldsCommand)
 @click.argument("networks", metavar="[NETWORK...]", nargs=-1)
 @click.option(
-    "--out", type=PATH, default=Path("onnx"), show_default=True, help="Folder of the models and their card."
+    "--out",
+    type=PATH,
+    default=Path("onnx"),
+    show_default=True,
+    help="Folder for the models and the model card.",
 )
 @output_options
 def export_onnx(networks: tuple[str, ...], out: Path, output: Output) -> None:
     """Export the trackers' networks to ONNX, with a model card.
 
-    NETWORK is rescoring, box-refinement, places, foreground, distance-room_long or distance-room_narrow;
-    without a name, all of them. Needs pip install 'peopleboy[onnx]'.
+    NETWORK is rescoring, box-refinement, places, foreground, distance-room_long or distance-room_narrow; the
+    default is all of them. The command needs the extra onnx: pip install 'peopleboy[onnx]'.
     """
     from peopleboy.studies.training.export_onnx import export_onnx as write
 

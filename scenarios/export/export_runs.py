@@ -31,8 +31,8 @@ class ExportOptions:
     camera: Annotated[
         str | None,
         Field(
-            description="Camera whose images and boxes mot, yolo, viper and mp4 contain.  [default: thermal; "
-            "mp4: thermal and colour]"
+            description="Camera to export with mot, yolo, viper and mp4.  [default: thermal; for mp4, "
+            "thermal and colour]"
         ),
         Metavar("NAME"),
     ] = None
@@ -40,30 +40,28 @@ class ExportOptions:
         float | None,
         Field(
             ge=0.0,
-            description="Minimum width and height of boxes in yolo and yolo-pose, in pixels; 0 keeps all.  "
-            "[default: 3]",
+            description="Minimum width and height of boxes in yolo and yolo-pose, in pixels; 0 keeps all "
+            "boxes.  [default: 3]",
         ),
     ] = None
     boxes: Annotated[
         BoxKind | None,
-        Field(
-            description="What the ground truth boxes of mot enclose: torso or whole person.  [default: torso]"
-        ),
+        Field(description="Ground-truth boxes in mot: torso or whole person.  [default: torso]"),
     ] = None
     epoch: Annotated[
         str | None,
         Field(
-            description="When the timestamps of mcap begin: 0, now, or a time such as 2026-05-01T12:00:00Z.  "
-            "[default: 0]"
+            description="Start of the timestamps in mcap: 0, now, or a time such as "
+            "2026-05-01T12:00:00Z.  [default: 0]"
         ),
         Metavar("TIME"),
     ] = None
     ros_distro: Annotated[
         Literal["humble", "jazzy"] | None,
-        Field(description="ROS distribution whose message types mcap has.  [default: jazzy]"),
+        Field(description="ROS distribution that defines the message types in mcap.  [default: jazzy]"),
     ] = None
     out: Annotated[Path, Field(description="Output folder.")]
-    overwrite: Annotated[bool, Field(description="Replace an earlier export in the folder.")] = False
+    overwrite: Annotated[bool, Field(description="Replace an earlier export in the output folder.")] = False
 
 
 def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> None:

@@ -110,15 +110,15 @@ class SetOptions:
 
     scenarios: tuple[str, ...] = ()
     frames: Annotated[
-        bool, Field(description="Write the images too, as `run --frames` does; otherwise ground truth only.")
+        bool, Field(description="Write images in addition to ground truth, as `run --frames` does.")
     ] = False
     random_worlds: Annotated[
-        bool, Field(description="Render a random world for each seed in place of scenarios.")
+        bool, Field(description="Render one random world per seed instead of scenarios.")
     ] = False
     seeds: range = range(100)
     out: Annotated[
         Path | None,
-        Field(description="Folder of the set.  [default: sets/SCENARIO-SCENARIO..., or sets/worlds]"),
+        Field(description="Output folder.  [default: sets/SCENARIO-SCENARIO..., or sets/worlds]"),
     ] = None
     tracker: Annotated[str, Field(description="Tracker of robots that follow people.")] = "truth"
 

@@ -123,7 +123,7 @@ class TrackImport:
     tracks: Path
     name: Annotated[str, Field(description="Name of the tracker that produced the tracks.")]
     out: Annotated[Path, Field(description="Output folder.")]
-    camera: Annotated[str, Field(description="Camera in whose images the boxes are.")] = THERMAL
+    camera: Annotated[str, Field(description="Camera whose images the boxes refer to.")] = THERMAL
     boxes: Annotated[BoxKind, meaning_of(RunOptions, "boxes")] = BoxKind.TORSO
     record: Annotated[bool, meaning_of(RunOptions, "record")] = True
     overwrite: Annotated[bool, meaning_of(RunOptions, "overwrite")] = False

@@ -35,9 +35,9 @@ class RgbdCamera:
     height_m: Annotated[
         float, Field(alias="camera_height_m", description="Height of the depth camera above the floor.")
     ] = 1.2
-    pitch_deg: Annotated[float, Field(description="Tilt of the depth camera; positive looks down.")] = 0.0
+    pitch_deg: Annotated[float, Field(description="Pitch of the depth camera; positive points down.")] = 0.0
     focal_px: Annotated[
-        float | None, Field(description="Focal length of the depth camera; or give --vertical-fov-deg.")
+        float | None, Field(description="Focal length of the depth camera, instead of --vertical-fov-deg.")
     ] = None
     vertical_fov_deg: Annotated[
         float | None, Field(description="Vertical field of view of the depth camera.  [default: 43]")
@@ -98,15 +98,17 @@ class RgbdOptions:
     ]
     m_per_count: Annotated[
         float,
-        Field(alias="depth_scale", description="Metres per count; 0.001 for millimetres."),
+        Field(
+            alias="depth_scale", description="Metres per count of the depth images; 0.001 for millimetres."
+        ),
         Metavar("M"),
     ]
     camera: RgbdCamera = field(default_factory=RgbdCamera)
     odometry: Annotated[
         Path | None,
         Field(
-            description="CSV file with the camera's motion: advance_m, aside_m, turn_deg for each image.  "
-            "[default: the camera is stationary]"
+            description="CSV file of the camera's motion, with the columns advance_m, aside_m and "
+            "turn_deg and one row per image.  [default: the camera is stationary]"
         ),
     ] = None
 
@@ -127,7 +129,7 @@ class TrackOptions:
     out: Annotated[Path, Field(description="Output folder.")]
     colour: Annotated[
         Path | None,
-        Field(description="Folder of colour images, one for each thermal image."),
+        Field(description="Folder of colour images, one per thermal image."),
     ] = None
     radiometry: Radiometry = field(default_factory=Radiometry)
     rgbd: RgbdOptions | None = None
@@ -136,25 +138,28 @@ class TrackOptions:
         Field(
             ge=0.1,
             le=1000.0,
-            description="Frame rate.  [default: that of the video or of seqinfo.ini; otherwise 15]",
+            description="Frame rate.  [default: from the video or seqinfo.ini, otherwise 15]",
         ),
     ] = None
     tracker: Annotated[str, Field(description="Tracker.")] = DEFAULT_TRACKER
     truth: Annotated[
         Path | None,
-        Field(description="Ground truth: VOT, OTB or MOTChallenge.  [default: the file beside the images]"),
+        Field(
+            description="Ground-truth file in VOT, OTB or MOTChallenge format.  [default: the file "
+            "next to the images]"
+        ),
     ] = None
     boxes: Annotated[
         BoxKind | None,
         Field(
-            description="What the tracker's boxes enclose: torso or whole person.  [default: as the ground "
-            "truth's; whole without ground truth]"
+            description="What the tracker's boxes enclose: torso or whole person.  [default: as in the "
+            "ground truth, or whole if there is none]"
         ),
     ] = None
     start: Box | str | None = None
-    seed: Annotated[int, Field(ge=0, description="Seed of all random numbers.")] = 0
-    video: Annotated[bool, Field(description="Write overlay.mp4 too; needs the package av.")] = False
-    overwrite: Annotated[bool, Field(description="Replace an earlier run in the folder.")] = False
+    seed: Annotated[int, Field(ge=0, description="Random seed.")] = 0
+    video: Annotated[bool, Field(description="Also write overlay.mp4; needs the package av.")] = False
+    overwrite: Annotated[bool, Field(description="Replace an earlier run in the output folder.")] = False
 
     @property
     def read(self) -> tuple[Path, ...]:

@@ -22,36 +22,38 @@ class RunOptions:
         viewer: address of a viewer that shows the recording during the run; None for none.
     """
 
-    seed: Annotated[int, Field(ge=0, description="Seed of all random numbers.")]
-    out: Annotated[Path, Field(description="Folder of the run.")]
+    seed: Annotated[int, Field(ge=0, description="Random seed.")]
+    out: Annotated[Path, Field(description="Output folder.")]
     frames: Annotated[bool, Field(description="Write the images of all cameras as PNG files.")] = False
     tracker: Annotated[str | None, Field(description="Tracker.")] = None
     boxes: Annotated[
         BoxKind,
         Field(
-            description="What the tracker's boxes enclose, which selects the ground-truth boxes for scoring: "
-            "the torso, or the whole person, as with most detectors."
+            description="What the tracker's boxes enclose: the torso, or the whole person, as for most "
+            "detectors. Scoring uses ground-truth boxes of the same kind."
         ),
     ] = BoxKind.TORSO
     behaviour: Annotated[str | None, Field(description="Behaviour that drives the robot.")] = None
     physics: Annotated[
         Literal["bullet", "kinematic"] | None,
         Field(
-            description="Physics: bullet is PyBullet; kinematic rolls without slip and needs no PyBullet.  "
-            "[default: the scenario's]"
+            description="Physics engine: bullet uses PyBullet; kinematic assumes rolling without slip "
+            "and does not need PyBullet.  [default: the scenario's]"
         ),
     ] = None
-    renderer: Annotated[str, Field(description="Renderer: raycast, or bullet, a slow reference.")] = "raycast"
-    record: Annotated[bool, Field(alias="no_recording", description="Write no rerun recording.")] = True
+    renderer: Annotated[str, Field(description="Renderer: raycast, or bullet as a slow reference.")] = (
+        "raycast"
+    )
+    record: Annotated[bool, Field(alias="no_recording", description="Do not write a rerun recording.")] = True
     lossless: Annotated[
         bool,
         Field(
-            description="Store the recording's images losslessly, in 12 times the space; by default they are "
-            "JPEG of quality 45."
+            description="Store the recording's images losslessly, which takes 12 times the space. "
+            "Without this option, they are JPEG with quality 45."
         ),
     ] = False
     viewer: str | None = None
-    overwrite: Annotated[bool, Field(description="Replace an earlier run in the folder.")] = False
+    overwrite: Annotated[bool, Field(description="Replace an earlier run in the output folder.")] = False
 
     def applied_to(self, scenario: "Scenario") -> "Scenario":
         """Return a scenario with the behaviour and the physics of these options.

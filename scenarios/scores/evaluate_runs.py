@@ -256,22 +256,22 @@ class ScoreOptions:
         Field(
             ge=0.0,
             lt=1.0,
-            description="Score people with more than this visible fraction; 0.3 ignores slivers at the "
-            "image border.",
+            description="Score only people with more than this visible fraction. For example, 0.3 "
+            "excludes slivers at the image border.",
         ),
     ] = MIN_VISIBLE
     camera: Annotated[
         str | None,
         Field(
-            description="Camera in whose images boxes are scored.  [default: thermal, or the only one that "
-            "has boxes]"
+            description="Camera whose boxes are scored.  [default: thermal, or the only camera that has "
+            "boxes]"
         ),
     ] = None
     boxes: Annotated[
         BoxKind | None,
         Field(
-            description="Ground truth boxes to score against: torso or whole person.  [default: those that "
-            "each run was scored against]"
+            description="Ground-truth boxes to score against: torso or whole person.  [default: as in "
+            "each run's own scores]"
         ),
     ] = None
 

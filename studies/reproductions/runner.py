@@ -154,32 +154,33 @@ class ReproduceOptions:
     paper: Annotated[
         str | None,
         Field(
-            description="Reproduce one source only: thesis (2007), 2005 (paper that evaluates it), panoramic "
-            "(2003), or situation (thesis on depth and colour)."
+            description="Reproduce only one source: thesis (2007), 2005 (the paper that evaluates its "
+            "tracker), panoramic (2003), or situation (the thesis on depth and colour)."
         ),
     ] = None
     quick: Annotated[
-        bool, Field(description="Reproduce a small part of everything in minutes; the page lists what.")
+        bool,
+        Field(description="Reproduce a small part of every result, in minutes; the page lists which parts."),
     ] = False
     seeds: Annotated[
         int | None,
         Field(
             ge=1,
-            description="Number of seeds, or random streams, of every result; a later call with more seeds "
+            description="Number of seeds or random streams per result. A later call with more seeds "
             "reuses existing results.  [default: 10, as in the sources]",
         ),
     ] = None
     out: Annotated[
         Path | None,
         Field(
-            description="Folder of the page and the results.  [default: runs/reproduce, or "
+            description="Folder for the page and the results.  [default: runs/reproduce, or "
             "runs/reproduce-quick]"
         ),
     ] = None
     films: Path
     so_far: Annotated[
         bool,
-        Field(description="Do not measure anything: write the page from the existing results in the folder."),
+        Field(description="Only write the page, from results that are already in the folder."),
     ] = False
 
     def __post_init__(self) -> None:

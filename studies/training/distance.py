@@ -266,16 +266,21 @@ def block_split(count: int, rng: np.random.Generator) -> tuple[NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DistanceTraining(Specification[list[DistanceSamples]]):
-    """Train on a scenario that begins with five empty panoramas, and then shows one person at a time."""
+    """The tracker panoramic-paper uses this network.
+
+    The training scenario must begin with five empty panoramas, and then show one person at a time.
+    """
 
     HINT: ClassVar[str] = "`peopleboy reproduce --paper panoramic` evaluates it in the paper's experiments"
 
     sequences: Annotated[
         int,
-        Field(ge=1, le=100_000, alias="seeds", description="Number of seeds, each a run of the scenario."),
+        Field(
+            ge=1, le=100_000, alias="seeds", description="Number of seeds; the scenario runs once per seed."
+        ),
     ] = 10
     scenario: Annotated[str, POSITIONAL, Field(description="Scenario, by name or path.")] = "room_long"
-    epochs: Annotated[int, Field(ge=1, le=1_000_000, description="Training epochs.")] = 2000
+    epochs: Annotated[int, Field(ge=1, le=1_000_000, description="Number of training epochs.")] = 2000
 
     def default_folder(self, model: str) -> Path:
         """Return a separate folder for each scenario."""

@@ -53,17 +53,19 @@ _REACH_PX: Final = 6  # margin around a person within which foreground counts as
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForegroundTraining(Specification[Tasks]):
-    """Train on panoramas of random scenes.
+    """The training data are panoramas of random scenes.
 
-    In each round the current network runs on a hundred scenes. The background model in its input therefore
-    depends on its own output, as it does in use.
+    In each round, the current network runs on a hundred scenes. As in a tracker, the background model in its
+    input therefore depends on its own output.
     """
 
     sequences: Annotated[
         int, Field(ge=1, le=100_000, alias="seeds", description="Number of random scenes to train on.")
     ] = 400
-    validation: Annotated[int, Field(ge=0, description="Number of other scenes for validation.")] = 20
-    rounds: Annotated[int, Field(ge=1, description="Training rounds, each on a hundred of the scenes.")] = 12
+    validation: Annotated[int, Field(ge=0, description="Number of further scenes for validation.")] = 20
+    rounds: Annotated[
+        int, Field(ge=1, description="Number of training rounds, each on a hundred of the scenes.")
+    ] = 12
 
     def tasks(self, out: Path) -> Tasks:
         """Render the scenes. They do not all fit into memory, so each file is read when it is needed."""

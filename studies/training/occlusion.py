@@ -231,10 +231,11 @@ ROUNDS = 40
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OcclusionTraining(Specification[PairSamples]):
-    """Train on pairs of overlapping people in scenarios, with the features that a tracker measures.
+    """The contour trackers use this classifier.
 
-    The tracker's classifier is trained on all pairs. It is evaluated by cross-validation: on each scenario,
-    after training on the others.
+    The training data are pairs of overlapping people in scenarios, with features that a tracker measures. The
+    shipped classifier is trained on all pairs. For evaluation, cross-validation trains without one scenario
+    at a time, and tests on that scenario.
     """
 
     SHIPPED_IN: ClassVar[Path] = TABLES
@@ -242,9 +243,13 @@ class OcclusionTraining(Specification[PairSamples]):
 
     sequences: Annotated[
         int,
-        Field(ge=1, le=100_000, alias="seeds", description="Number of seeds, each a run of every scenario."),
+        Field(
+            ge=1, le=100_000, alias="seeds", description="Number of seeds; each scenario runs once per seed."
+        ),
     ] = 5
-    tracker: Annotated[Literal["contour", "thesis"], Field(description="Tracker to train.")] = "contour"
+    tracker: Annotated[
+        Literal["contour", "thesis"], Field(description="Tracker that the classifier is for.")
+    ] = "contour"
 
     def default_folder(self, model: str) -> Path:
         """Return a separate folder for each tracker, since their features differ."""

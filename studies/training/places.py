@@ -197,7 +197,11 @@ def _beside(one: _Standing, rng: np.random.Generator) -> Floats:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlacesTraining(Specification[Split[PlaceSamples]]):
-    """Train on random scenes; run `peopleboy train foreground --ship` first, whose network it uses."""
+    """The tracker panoramic uses these networks.
+
+    The training data are random scenes, processed by the shipped foreground network. Run `peopleboy train
+    foreground --ship` first.
+    """
 
     sequences: Annotated[
         int, Field(ge=2, le=100_000, alias="seeds", description="Number of random scenes to train on.")

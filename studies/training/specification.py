@@ -19,35 +19,35 @@ from peopleboy.tracker.networks.weights_archive import SHIPPED
 MODELS: Final[Mapping[str, tuple[str, str]]] = {
     "cascade": (
         "detector.train_cascade:CascadeTraining",
-        "Boosted trees of the detector: whether a window of a thermal image shows a person, and where.",
+        "Train the boosted trees that detect people in windows of thermal images.",
     ),
     "rescoring": (
         "detector.train_rescoring:RescoringTraining",
-        "Network that corrects scores and boxes of the cascade's detections.",
+        "Train the network that corrects scores and boxes of the cascade's detections.",
     ),
     "box-refinement": (
         "detector.train_box_refinement:BoxRefinementTraining",
-        "Network that corrects the boxes of the detector's final detections.",
+        "Train the network that corrects the boxes of the detector's final detections.",
     ),
     "occlusion": (
         "occlusion:OcclusionTraining",
-        "Classifier of which of two overlapping people is in front, for the contour trackers.",
+        "Train the classifier that decides which of two overlapping people is in front.",
     ),
     "foreground": (
         "foreground:ForegroundTraining",
-        "Network that separates people from background in panoramas.",
+        "Train the network that separates people from background in panoramas.",
     ),
     "places": (
         "places:PlacesTraining",
-        "Networks of the tracker panoramic: presence and position of people in patches of panoramas.",
+        "Train the networks that find and locate people in patches of panoramas.",
     ),
     "distance": (
         "distance:DistanceTraining",
-        "Network of the tracker panoramic-paper: distance of a person in the panorama.",
+        "Train the network that estimates the distance of a person in a panorama.",
     ),
     "windows": (
         "windows:WindowsTraining",
-        "Support vector machines of the tracker rgbd: whether a window shows a person.",
+        "Train the support vector machines that decide whether a window shows a person.",
     ),
 }
 """For each model, the location of its specification and a description."""

@@ -201,7 +201,11 @@ def _jittered(window: Box, rng: np.random.Generator) -> Box:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WindowsTraining(Specification[Split[WindowSamples]]):
-    """Train classifiers of near and far windows on random scenes, with and without depth."""
+    """The tracker rgbd uses these classifiers.
+
+    There are classifiers for near and far windows, each with and without depth. The training data are random
+    scenes.
+    """
 
     sequences: Annotated[
         int, Field(ge=1, le=100_000, alias="seeds", description="Number of random scenes to train on.")

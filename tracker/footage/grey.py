@@ -92,12 +92,13 @@ class Radiometry:
     span_c: Annotated[
         tuple[float, float] | None,
         Field(
-            alias="temperature_range", description="Temperatures [degC] of grey 0 and 255 in 8-bit images."
+            alias="temperature_range",
+            description="Temperatures [degC] of grey levels 0 and 255 in 8-bit images.",
         ),
         Metavar("LOW HIGH"),
     ] = None
     scale: tuple[float, float] | None = None
-    is_inverted: Annotated[bool, Field(alias="black_hot", description="Warm pixels are dark.")] = False
+    is_inverted: Annotated[bool, Field(alias="black_hot", description="Treat dark pixels as warm.")] = False
 
     def __post_init__(self) -> None:
         if self.span_c is not None and self.scale is not None:

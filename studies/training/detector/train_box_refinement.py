@@ -46,7 +46,7 @@ _NOTHING: Final = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxRefinementTraining(CropTraining):
-    """Train on people in random worlds on which the cascade was not trained."""
+    """The training data are people in random worlds that are new to the shipped cascade."""
 
     NETWORK: ClassVar[type[BoxRefinementNetwork]] = BoxRefinementNetwork
     EPOCHS: ClassVar[int] = 2

@@ -75,9 +75,10 @@ _LINEAR_FROM: Final = 0.9  # quantile of errors from which on the loss of the bo
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CascadeTraining(Specification[Tasks]):
-    """Train on random worlds, some of them crowded, without details, or as warm as people.
+    """The cascade is trained on random worlds.
 
-    A tenth of the worlds is held out for calibrating scores.
+    Some worlds are crowded, without details, or as warm as people. A tenth of the worlds is held out for the
+    calibration of scores.
     """
 
     sequences: Annotated[
@@ -86,13 +87,13 @@ class CascadeTraining(Specification[Tasks]):
     windows: Annotated[
         tuple[WindowKind, ...],
         Field(
-            description="Trees to train: for people mostly inside the image, or truncated by its border; "
-            "the other trees stay unchanged."
+            description="Trees to train: those for people mostly inside the image (whole), or those for "
+            "people truncated by its border (cut). The other trees stay unchanged."
         ),
     ] = tuple(WindowKind)
     only_boxes: Annotated[
         bool,
-        Field(description="Train the box regression only; the trees that score windows stay unchanged."),
+        Field(description="Train only the box regression; the trees that score windows stay unchanged."),
     ] = False
 
     def default_folder(self, model: str) -> Path:  # noqa: ARG002

@@ -43,7 +43,7 @@ _LINEAR_FROM: Final = 2.0  # error of an offset in units, from which on its loss
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RescoringTraining(CropTraining):
-    """Train on detections of the shipped cascade in random worlds that it was not trained on."""
+    """The training data are the shipped cascade's detections in random worlds that are new to it."""
 
     NETWORK: ClassVar[type[RescoringNetwork]] = RescoringNetwork
     EPOCHS: ClassVar[int] = 4
