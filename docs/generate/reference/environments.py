@@ -19,13 +19,13 @@ from peopleboy.scenarios.environments.observations import (
 from peopleboy.scenarios.files.load import load_scenario
 
 TRACKED_COLUMNS = {
-    "id": "number of the track, 1 or more; 0 for an empty row",
-    "x": "column of the box centre in half image widths: -1 left border, 1 right border",
-    "height": "height of the box in image heights",
-    "top": "top of the box in image heights, from the top of the image",
-    "bottom": "bottom of the box in image heights, from the top of the image",
+    "id": "track id, from 1; 0 for an empty row",
+    "x": "column of the box centre: -1 at the left image border, 1 at the right one",
+    "height": "height of the box [image heights]",
+    "top": "top edge of the box, measured from the top of the image [image heights]",
+    "bottom": "bottom edge of the box, measured from the top of the image [image heights]",
     "confidence": "confidence of the track",
-    "is_visible": "0 while the person is totally occluded, else 1",
+    "is_visible": "0 while the person is totally occluded, otherwise 1",
 }
 
 
