@@ -51,8 +51,8 @@ def _stand(settings: BehaviourSettings) -> "Behaviour":  # noqa: ARG001
 
 @BEHAVIOURS.register(
     "follow_person",
-    summary="searches for a person and follows at the distance at which the person is `keep_height` tall in "
-    "the image",
+    summary="searches for a person, and follows at the distance at which the person is `keep_height` "
+    "tall in the image",
 )
 def _follow_person(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.following.follow_person import FollowPerson
@@ -62,7 +62,7 @@ def _follow_person(settings: BehaviourSettings) -> "Behaviour":
 
 @BEHAVIOURS.register(
     "follow_corridor",
-    summary="drives in the middle of a corridor, turns at its end, and waits for people in the way",
+    summary="drives along the middle of a corridor, turns at its end, and waits for people in its path",
 )
 def _follow_corridor(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.corridor.follow_corridor import FollowCorridor

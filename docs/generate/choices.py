@@ -30,7 +30,7 @@ _PLACES: Mapping[str, PlaceConfig] = {
 
 def walls() -> str:
     """List the walls of every kind of place."""
-    return table(("place", "its walls"), [(f"`{name}`", _walls(place)) for name, place in _PLACES.items()])
+    return table(("place", "walls"), [(f"`{name}`", _walls(place)) for name, place in _PLACES.items()])
 
 
 def garments() -> str:
@@ -49,7 +49,7 @@ def colours() -> str:
 
 def things() -> str:
     """List all kinds of objects."""
-    head = ("kind", "depth, width, height", "temperature", "where")
+    head = ("kind", "depth, width, height", "temperature", "position")
     return table(head, [_thing(name, kind) for name, kind in KINDS.items()])
 
 

@@ -26,14 +26,14 @@ def type_text(field: Schema) -> str:
 def default_text(field: Schema) -> str:
     """Describe the default of a field."""
     if "$ref" in field and "default" not in field:
-        return "as below"
+        return "see below"
     default = field.get("default")
     if default is None:
         return ""
     if isinstance(default, bool):
         return "yes" if default else "no"
     if isinstance(default, dict):
-        return "as below" if default else "none"
+        return "see below" if default else "none"
     if isinstance(default, list):
         return f"`{', '.join(map(str, default))}`" if default else "none"
     return f"`{default}`"
@@ -75,7 +75,7 @@ def _number(field: Schema) -> str:
     low, high = field.get("minimum"), field.get("maximum")
     above = field.get("exclusiveMinimum")
     start = f"more than {above:g}" if above is not None else "" if low is None else f"{low:g}"
-    return start if high is None else f"{start} to {high:g}"
+    return start if high is None else f"{start} to {high:g}" if start else f"up to {high:g}"
 
 
 def _text(field: Schema) -> str:
@@ -89,18 +89,19 @@ def _list(field: Schema) -> str:
     inner = type_text(field["items"])
     low, high = field.get("minItems", 0), field.get("maxItems")
     count = "" if high is None else f"up to {high} " if low == 0 else f"{low} to {high} "
-    return f"list of {count}{inner}"
+    return f"list of {count}{'names' if inner == 'a name' else inner}"
 
 
 def _mapping(field: Schema) -> str:
     inner = field.get("additionalProperties") or next(iter(field["patternProperties"].values()))
-    return f"mapping of names to {type_text(inner)}"
+    text = type_text(inner)
+    return f"mapping of names to {'numbers, each ' * ('type' in inner and inner['type'] == 'number')}{text}"
 
 
 _KINDS = {
     "number": _number,
     "integer": lambda field: (
-        f"whole, {_number(field)}" if "maximum" in field else f"whole, from {_number(field)}"
+        f"integer, {_number(field)}" if "maximum" in field else f"integer, at least {_number(field)}"
     ),
     "boolean": lambda _: "`true`, `false`",
     "string": _text,

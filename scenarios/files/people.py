@@ -32,7 +32,9 @@ _BOTTOM_COLOURS: Final = ("black", "khaki", "blue", "white", "red", "green", "li
 Path = tuple[Waypoint, ...]
 GivenClothes = Annotated[
     dict[str, Any],
-    Given(Clothes, "Clothes of a person; omitted keys are sampled from the seed.", shows_defaults=False),
+    Given(
+        Clothes, "Clothes of a person; keys that you omit are sampled from the seed.", shows_defaults=False
+    ),
 ]
 
 
@@ -41,21 +43,21 @@ class _Variations(WalkConfig):
     """Settings of a path that are varied by the seed."""
 
     jitter_m: Annotated[
-        float, Field(ge=0.0, le=2.0, description="radius within which the seed moves each waypoint")
+        float, Field(ge=0.0, le=2.0, description="maximum random displacement of each waypoint")
     ] = 0.0
     speed_jitter: Annotated[
         float,
-        Field(ge=0.0, le=0.5, description="largest relative change of all speeds by the seed"),
+        Field(ge=0.0, le=0.5, description="maximum random change of all speeds, as a share"),
     ] = 0.0
     enter_jitter_s: Annotated[
-        float, Field(ge=0.0, le=60.0, description="largest delay of the entry by the seed")
+        float, Field(ge=0.0, le=60.0, description="maximum random delay of the entry")
     ] = 0.0
 
 
 @with_config(STRICT)
 @dataclass(frozen=True, kw_only=True)
 class PersonSpec(ActorConfig, _Variations):
-    """A walking person; omitted details of the appearance are sampled from the seed."""
+    """A walking person. Keys of the appearance that you omit are sampled from the seed."""
 
     height_m: Annotated[float | None, meaning_of(PersonConfig, "height_m")] = None
     sex: Annotated[Sex | None, meaning_of(PersonConfig, "sex")] = None
@@ -65,7 +67,7 @@ class PersonSpec(ActorConfig, _Variations):
 
 @dataclass(frozen=True, kw_only=True)
 class GroupSpec(_Variations):
-    """People who walk abreast along one path, from its right side to its left."""
+    """People who walk abreast along the same path."""
 
     path: Annotated[
         Path,
@@ -73,7 +75,7 @@ class GroupSpec(_Variations):
             strict=False,
             min_length=2,
             max_length=500,
-            description="waypoints, in order; the direction of the path defines the right side",
+            description="waypoints of the path, in order; the walking direction defines left and right",
         ),
     ]
     names: Annotated[

@@ -29,10 +29,11 @@ CameraName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CommandSpec:
-    """A velocity command of a scripted robot, valid from a given time; the drive approximates it.
+    """A velocity command of a scripted robot, valid from a given time.
 
-    The drive reaches at most 0.8 m/s and 150 deg/s, and accelerates by 0.6 m/s2 and 200 deg/s2. The guard,
-    which keeps 0.45 m from obstacles detected by sonar, also stops a scripted robot before walls and people.
+    The robot follows commands within the limits of its drive: 0.8 m/s, 150 deg/s, 0.6 m/s2 and 200 deg/s2.
+    The safety guard keeps 0.45 m from obstacles detected by sonar, so it can stop a scripted robot in front
+    of walls and people.
     """
 
     from_s: Annotated[Seconds, Field(description="time from which the command is valid")]
@@ -52,7 +53,7 @@ else:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotSpec:
-    """The robot: start position, cameras and behaviour."""
+    """Start pose, cameras and behaviour of the robot."""
 
     at_m: Annotated[Point, meaning_of(RobotConfig, "at_m")]
     heading_deg: Annotated[float, meaning_of(RobotConfig, "heading_rad")] = 0.0
@@ -72,27 +73,27 @@ class RobotSpec:
         Field(
             gt=0.05,
             le=1.5,
-            description="for a following robot: the person's height in the image [image heights] where it "
-            "stops",
+            description="for a robot that follows people: height of the person in the image at which the "
+            "robot stops [image heights]",
         ),
     ] = None
     walls_by: Annotated[
         Literal["sonar", "image"] | None,
-        Field(description="for a robot in corridors: sensor that measures the walls; default `sonar`"),
+        Field(description="for a robot in corridors: sensor that measures the walls, by default `sonar`"),
     ] = None
     tracker: Annotated[
         str | None,
         Field(
             pattern="^[a-z][a-z0-9_-]*$",
-            description="name of the tracker that detects people for the robot; `--tracker` overrides it; "
-            "if omitted, `detection`",
+            description="tracker whose tracks the robot uses, by default `detection`; the option "
+            "`--tracker` overrides it",
         ),
     ] = None
     cameras: Annotated[
         dict[CameraName, Annotated[dict[str, Any], GivenCamera()]],
         Field(
-            description="cameras by name; `thermal` and `colour` always exist, and their entries list only "
-            "values that differ from the defaults; any other name adds a camera"
+            description="cameras by name. `thermal` and `colour` always exist; list only the values that "
+            "differ from their defaults. Any other name adds a camera"
         ),
     ] = field(default_factory=dict)
 

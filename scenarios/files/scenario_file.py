@@ -40,15 +40,15 @@ class Strength(NamedTuple):
 
 
 STRENGTHS: Final[Mapping[str, Strength]] = {
-    "frames_dropped": Strength("share of the frames", 0.5, 1.0),
-    "frames_late": Strength("delay [s]", 0.2, 2.0),
-    "frames_duplicated": Strength("copies after each frame", 1.0, 15.0),
-    "dead_rows": Strength("share of the rows", 0.2, 1.0),
-    "noise_bursts": Strength("standard deviation [grey levels]", 60.0, 255.0),
-    "calibration_off": Strength("shift to the right [share of the image width]", 0.1, 0.5),
-    "wheel_slip": Strength("share of the motion that is lost", 0.3, 0.9),
-    "odometry_drift": Strength("excess distance, as a share", 0.2, 1.0),
-    "tracker_overload": Strength("frames skipped after each processed one", 2.0, 30.0),
+    "frames_dropped": Strength("the share of replaced frames", 0.5, 1.0),
+    "frames_late": Strength("the delay [s]", 0.2, 2.0),
+    "frames_duplicated": Strength("the number of copies after each frame", 1.0, 15.0),
+    "dead_rows": Strength("the share of black rows", 0.2, 1.0),
+    "noise_bursts": Strength("the standard deviation of the noise [grey levels]", 60.0, 255.0),
+    "calibration_off": Strength("the shift to the right [share of the image width]", 0.1, 0.5),
+    "wheel_slip": Strength("the share of the motion that is lost", 0.3, 0.9),
+    "odometry_drift": Strength("the excess distance, as a share of the true distance", 0.2, 1.0),
+    "tracker_overload": Strength("the number of frames skipped after each processed frame", 2.0, 30.0),
 }
 """Kinds of faults that have a strength."""
 
@@ -58,7 +58,7 @@ class LightSpec:
     """A change of the room's light."""
 
     at_s: Annotated[Seconds, Field(description="time of the change")]
-    level: Annotated[float, Field(ge=0.0, le=2.0, description="0 is dark, 1 is full light")]
+    level: Annotated[float, Field(ge=0.0, le=2.0, description="light level: 0 is dark, and 1 is full light")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,36 +68,38 @@ class FaultSpec:
     kind: Annotated[
         Failure,
         Field(
-            description="`camera_lost`: a camera gives no signal, its images are zero; `camera_frozen`: it "
-            "repeats its last image; `camera_black`: its images are black; `camera_saturated`: white; "
-            "`camera_shutter`: it repeats its last image for 0.4 s of every 2 s; `frames_dropped`: single "
-            "frames are replaced by the previous one; `frames_late`: images are delayed; "
-            "`frames_duplicated`: every image is repeated; `dead_rows`: rows of the image are black; "
-            "`noise_bursts`: every other image is noisy; `calibration_off`: the image is shifted sideways; "
-            "`sonar_maximum`: sonars report their maximum range; `sonar_stuck`: they repeat their readings; "
-            "`wheel_slip`: the robot moves less than its wheels; `odometry_jumps`: the odometry pose "
-            "jumps at once, and again every second; `odometry_drift`: the odometry overestimates distances; "
-            "`tracker_overload`: the tracker skips frames and repeats its tracks; `tracker_raises`: it "
-            "raises an error at every image"
+            description="`camera_lost`: the camera gives no signal, and its images are zero; "
+            "`camera_frozen`: the camera repeats its last image; `camera_black`: images are "
+            "black; `camera_saturated`: images are white; `camera_shutter`: the camera repeats "
+            "its last image for 0.4 s of every 2 s; `frames_dropped`: some frames are replaced "
+            "by the frame before; `frames_late`: images are delayed; `frames_duplicated`: every "
+            "image is repeated; `dead_rows`: rows of the image are black; `noise_bursts`: every "
+            "other image is noisy; `calibration_off`: the image is shifted sideways; "
+            "`sonar_maximum`: sonars report their maximum range; `sonar_stuck`: sonars repeat "
+            "their readings; `wheel_slip`: the robot moves less than its wheels turn; "
+            "`odometry_jumps`: the odometry pose jumps immediately, and again every second; "
+            "`odometry_drift`: the odometry overestimates distances; `tracker_overload`: the "
+            "tracker skips frames and repeats its tracks; `tracker_raises`: the tracker raises "
+            "an error at every image"
         ),
     ]
     from_s: Annotated[Seconds, Field(description="start of the failure")]
     lasts_s: Annotated[
-        Seconds | None, Field(description="duration of the failure; if omitted, until the end of the run")
+        Seconds | None, Field(description="duration of the failure; by default, until the end of the run")
     ] = None
     camera: Annotated[
-        Word | None, Field(description="name of the camera that fails; if omitted, all cameras")
+        Word | None, Field(description="name of the camera that fails; by default, all cameras")
     ] = None
     sonar: Annotated[
-        int | None, Field(ge=0, le=15, description="number of the sonar that fails; if omitted, all sonars")
+        int | None, Field(ge=0, le=15, description="number of the sonar that fails; by default, all sonars")
     ] = None
     strength: Annotated[
         float | None,
         Field(
             gt=0.0,
-            description="strength; "
-            + "; ".join(
-                f"of `{kind}` {one.meaning}, default {one.default:g}, at most {one.greatest:g}"
+            description="strength of the failure. "
+            + " ".join(
+                f"For `{kind}`, it is {one.meaning} (default {one.default:g}, at most {one.greatest:g})."
                 for kind, one in STRENGTHS.items()
             ),
         ),
@@ -113,17 +115,17 @@ class FaultSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrawnSpec:
-    """Written by a run: the origin of the sampled values."""
+    """Origin of the sampled values. Runs write this part."""
 
     seed: Annotated[int, Field(ge=0, description="seed of the run")]
-    versions: Annotated[dict[str, str], Field(description="versions of packages that affect the output")] = (
-        field(default_factory=dict)
-    )
+    versions: Annotated[
+        dict[str, str], Field(description="versions of the packages that affect the output")
+    ] = field(default_factory=dict)
     drive: Annotated[
         Literal["drive.parquet"] | None,
         Field(
-            description="commands that the robot repeats, in a file beside this one, whatever its behaviour "
-            "is"
+            description="file of recorded commands, in the same folder as this file; the robot repeats "
+            "them, whatever its `behaviour` is"
         ),
     ] = None
 
@@ -131,23 +133,25 @@ class DrawnSpec:
 @with_config(STRICT)
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScenarioSpec:
-    """A scenario file."""
+    """A scenario file has these keys at the top level."""
 
-    name: Annotated[Word, Field(description="name of the scenario, one word; also used for folders")]
+    name: Annotated[
+        Word, Field(description="name of the scenario, as one word; output folders are named after it")
+    ]
     description: Annotated[
         str,
         Field(
             min_length=1,
             max_length=1000,
-            description="what happens, in one or two sentences; `peopleboy list` prints it",
+            description="summary in one or two sentences, which `peopleboy list` prints",
         ),
     ]
     like: Annotated[
         Word | None,
-        Field(description="library scenario that supplies the keys omitted in this file"),
+        Field(description="library scenario from which this file takes all keys that it omits"),
     ] = None
     duration_s: Annotated[float, Field(gt=0.0, le=36000.0, description="duration of a run")]
-    place: Annotated[PlaceConfig, Field(description="the room, corridor or street")]
+    place: Annotated[PlaceConfig, Field(description="room, corridor or street")]
     things: Annotated[
         tuple[ThingConfig, ...],
         Field(strict=False, max_length=300, description="objects in the place"),
@@ -158,25 +162,25 @@ class ScenarioSpec:
     ] = ()
     groups: Annotated[
         tuple[GroupSpec, ...],
-        Field(strict=False, max_length=20, description="groups of people who walk side by side"),
+        Field(strict=False, max_length=20, description="groups of people who walk abreast"),
     ] = ()
     clothes_differ: Annotated[
         bool,
-        Field(description="whether omitted colours of clothes are sampled to differ clearly"),
+        Field(description="whether sampled colours of clothes differ clearly between people"),
     ] = False
     detail: Annotated[
         Detail,
         Field(
-            description="level of detail of people and surfaces: `full` is closer to real images, "
-            "`plain` is faster and reproduces the images of older files"
+            description="level of detail of people and surfaces. `full` is closer to real images; "
+            "`plain` is faster, and reproduces the images of older scenario files"
         ),
     ] = "plain"
     physics: Annotated[
         PhysicsName,
         Field(
-            description="physics of the robot: `bullet` simulates dynamics and needs PyBullet; `kinematic` "
-            "rolls without slip, is faster and does not need PyBullet; if omitted, `bullet` if PyBullet is "
-            "installed, otherwise `kinematic`",
+            description="physics of the robot. `bullet` simulates dynamics and needs PyBullet. "
+            "`kinematic` assumes rolling without slip, is faster, and does not need PyBullet. "
+            "The default is `bullet` if PyBullet is installed, and `kinematic` otherwise",
             json_schema_extra={"default": "bullet"},
         ),
     ] = field(default_factory=default_physics)
@@ -185,15 +189,21 @@ class ScenarioSpec:
         Field(
             strict=False,
             max_length=1000,
-            description="changes of the room's light, in order of time; if omitted, full light",
+            description="changes of the light level, in order of time; by default, full light",
         ),
     ] = ()
     robot: Annotated[RobotSpec, Field(description="start position, cameras and behaviour of the robot")]
     faults: Annotated[
         tuple[FaultSpec, ...],
-        Field(strict=False, max_length=50, description="sensor and tracker failures, to test a controller"),
+        Field(
+            strict=False,
+            max_length=50,
+            description="failures of sensors or of the tracker, for testing a controller",
+        ),
     ] = ()
-    drawn: Annotated[DrawnSpec | None, Field(description="written by a run; do not set it")] = None
+    drawn: Annotated[
+        DrawnSpec | None, Field(description="origin of the sampled values; written by runs, not by you")
+    ] = None
 
 
 def to_data(spec: ScenarioSpec) -> dict[str, Any]:

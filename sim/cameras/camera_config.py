@@ -25,7 +25,10 @@ FARTHEST_M: Final = 65.0  # largest depth in 16 bits of millimetres
 DepthSensorName = Literal["kinect", "tof"]
 GainName = Literal["fixed", "percentile", "plateau"]
 Exposure = Annotated[
-    float, Field(ge=0.0, le=1.0, description="exposure time, over which rotation blurs the image")
+    float,
+    Field(
+        ge=0.0, le=1.0, description="exposure time; rotation of the robot during this time blurs the image"
+    ),
 ]
 
 
@@ -55,7 +58,7 @@ class CameraConfig:
         Field(
             ge=1,
             le=15,
-            description="frame rate: 1, 3, 5 or 15; default 15, which `thermal` and `colour` always have",
+            description="frame rate: 1, 3, 5 or 15. `thermal` and `colour` always have the default, 15",
         ),
     ] = None
     exposure_s: Exposure = 0.0
@@ -76,7 +79,7 @@ class CameraConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThermalConfig(CameraConfig):
-    """A thermal camera; the tracker uses the one named `thermal`.
+    """A thermal camera. Trackers use the one named `thermal`.
 
     Raises:
         BadInput: the gain is unknown, the span is empty, or the shutter never opens.
@@ -89,21 +92,25 @@ class ThermalConfig(CameraConfig):
     gain: Annotated[
         GainName,
         Field(
-            description="mapping from temperature to 8-bit grey: `fixed`, linear over `lowest_c` to "
-            "`highest_c`; `percentile`, linear over the span of the image; `plateau`, its histogram "
-            "equalised up to a plateau"
+            description="mapping from temperature to 8-bit grey levels: `fixed` is linear from "
+            "`lowest_c` to `highest_c`; `percentile` is linear over the span of the image; "
+            "`plateau` is a histogram equalisation with a limited slope"
         ),
     ] = "fixed"
     # The span of a fixed gain: T ch. 3.
-    lowest_c: Annotated[float, Field(ge=-40.0, le=160.0, description="gain `fixed`: value of black")] = 24.0
-    highest_c: Annotated[float, Field(ge=-40.0, le=160.0, description="gain `fixed`: value of white")] = 36.0
+    lowest_c: Annotated[
+        float, Field(ge=-40.0, le=160.0, description="with gain `fixed`: temperature of black")
+    ] = 24.0
+    highest_c: Annotated[
+        float, Field(ge=-40.0, le=160.0, description="with gain `fixed`: temperature of white")
+    ] = 36.0
     gain_follows_s: Annotated[
         float,
         Field(
             ge=0.0,
             le=60.0,
-            description="time constant of an automatic gain; 0 adapts at once; growth of the span is always "
-            "immediate",
+            description="time constant of an automatic gain; 0 adapts immediately. The span always grows "
+            "immediately",
         ),
     ] = 1.0
     tail_percent: Annotated[
@@ -111,34 +118,43 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=0.0,
             le=0.45,
-            description="share of the pixels outside the span of an automatic gain, at each end",
+            description="share of pixels below the span of an automatic gain, and of pixels above it",
         ),
     ] = 0.3
     least_span_k: Annotated[
-        float, Field(ge=0.5, le=200.0, description="smallest span of an automatic gain")
+        float, Field(ge=0.5, le=200.0, description="minimum span of an automatic gain")
     ] = 5.0
     plateau_percent: Annotated[
         float,
         Field(
             ge=0.01,
             le=100.0,
-            description="gain `plateau`: largest share of the pixels that counts per 0.05 K; 100 equalises "
-            "fully",
+            description="with gain `plateau`: maximum share of pixels that a histogram bin of 0.05 K "
+            "counts; 100 is full equalisation",
         ),
     ] = 0.5
     linear_share: Annotated[
-        Share, Field(description="gain `plateau`: share of the greys that is linear over the span")
+        Share,
+        Field(
+            description="with gain `plateau`: share of the grey levels that is mapped linearly over the span"
+        ),
     ] = 0.3
     blur_px: Annotated[
         float, Field(ge=0.0, le=20.0, description="standard deviation of the optical blur")
     ] = 0.7
     netd_k: Annotated[
-        float, Field(ge=0.0, le=5.0, description="standard deviation of temporal noise, new in every image")
+        float,
+        Field(
+            ge=0.0,
+            le=5.0,
+            description="standard deviation of the temporal noise, which is independent in every image",
+        ),
     ] = 0.08
     fixed_pattern_k: Annotated[
-        float, Field(ge=0.0, le=5.0, description="standard deviation of fixed offsets between pixels")
+        float,
+        Field(ge=0.0, le=5.0, description="standard deviation of the fixed-pattern noise between pixels"),
     ] = 0.03
-    dead_pixels: Annotated[Share, Field(description="share of dead pixels, which always read one value")] = (
+    dead_pixels: Annotated[Share, Field(description="share of dead pixels, which have a constant value")] = (
         0.0001
     )
     column_noise_k: Annotated[
@@ -146,19 +162,20 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=0.0,
             le=5.0,
-            description="standard deviation of offsets between columns, constant until the next calibration",
+            description="standard deviation of the offsets between columns, which change at each shutter "
+            "calibration",
         ),
     ] = 0.0
     vignetting_k: Annotated[
-        float, Field(ge=0.0, le=10.0, description="apparent excess temperature of the corners")
+        float, Field(ge=0.0, le=10.0, description="apparent temperature excess in the image corners")
     ] = 0.0
     offset_drift_k_per_min: Annotated[
         float,
         Field(
             ge=0.0,
             le=20.0,
-            description="standard deviation of the drift rate of the whole image after a calibration; "
-            "patches drift by half of that, single pixels by a tenth",
+            description="standard deviation of the drift rate of the whole image after a calibration. "
+            "Patches of the image drift at half of this rate, single pixels at a tenth",
         ),
     ] = 0.0
     shutter_every_s: Annotated[
@@ -166,30 +183,32 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=0.0,
             le=3600.0,
-            description="time between shutter calibrations; 0 for none",
+            description="time between shutter calibrations; 0 disables the shutter",
         ),
     ] = 0.0
     shutter_lasts_s: Annotated[
-        float, Field(ge=0.0, le=5.0, description="duration of a calibration, which freezes the image")
+        float,
+        Field(
+            ge=0.0, le=5.0, description="duration of a shutter calibration, during which the image is frozen"
+        ),
     ] = 0.4
     sharpening: Annotated[
         float,
         Field(
             ge=0.0,
             le=5.0,
-            description="amount of unsharp masking before 8-bit encoding; it causes halos",
+            description="amount of unsharp masking before the 8-bit conversion, which causes halos",
         ),
     ] = 0.0
     sharpening_px: Annotated[
-        float, Field(gt=0.0, le=20.0, description="standard deviation of the blur of that mask")
+        float, Field(gt=0.0, le=20.0, description="standard deviation of the blur in the unsharp mask")
     ] = 1.5
     coring_k: Annotated[
         float,
         Field(
             ge=0.0,
             le=5.0,
-            description="coring: details that differ by less from their surroundings are treated as noise "
-            "and smoothed",
+            description="coring threshold: smaller differences from the surroundings are smoothed as noise",
         ),
     ] = 0.0
     jpeg_quality: Annotated[
@@ -197,7 +216,7 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=1,
             le=100,
-            description="JPEG quality of the 8-bit image; default no compression",
+            description="JPEG quality of the 8-bit image; by default, no compression",
         ),
     ] = None
 
@@ -258,14 +277,15 @@ class LightConfig(CameraConfig):
         Field(
             gt=0.0,
             le=10.0,
-            description="value of a white surface facing the light in full light, as a share of full scale",
+            description="pixel value of a white surface that faces the light at full level, as a share "
+            "of full scale",
         ),
     ] = 0.95
     read_noise: Annotated[
-        Share, Field(description="standard deviation of the noise of a black pixel, as a share of full scale")
+        Share, Field(description="noise of a black pixel: standard deviation, as a share of full scale")
     ] = 0.004
     shot_noise: Annotated[
-        Share, Field(description="standard deviation of the noise of a white pixel, as a share of full scale")
+        Share, Field(description="noise of a white pixel: standard deviation, as a share of full scale")
     ] = 0.012
 
     def noisier(self, factor: float) -> Self:
@@ -275,7 +295,7 @@ class LightConfig(CameraConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColourConfig(LightConfig):
-    """A colour camera; the tracker uses the one named `colour`."""
+    """A colour camera. Trackers use the one named `colour`."""
 
     kind: ClassVar[str] = "colour"
 
@@ -284,7 +304,7 @@ class ColourConfig(LightConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PanoramaConfig(LightConfig):
-    """A panoramic colour camera with a mirror over the robot's axis; its image is unrolled."""
+    """A panoramic colour camera with a mirror above the robot's axis and an unrolled image."""
 
     kind: ClassVar[str] = "panorama"
 
@@ -292,15 +312,16 @@ class PanoramaConfig(LightConfig):
     raw: Annotated[
         bool,
         Field(
-            description="whether the image is unrolled from the round image of the lens, which is coarse at "
-            "steep angles and is kept, too; otherwise each pixel is rendered directly"
+            description="whether the image is unrolled from the round image of the lens, which is also "
+            "stored. Such an image is coarse at steep angles. Otherwise, each pixel is rendered "
+            "directly"
         ),
     ] = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DepthConfig(LightConfig):
-    """A depth camera, with colour through the same lens.
+    """A depth camera that also provides colour through the same lens.
 
     Raises:
         BadInput: the sensor is unknown or has no amplitude, the scale is negative, or the range of depths is
@@ -313,8 +334,9 @@ class DepthConfig(LightConfig):
     sensor: Annotated[
         DepthSensorName,
         Field(
-            description="measuring principle: `kinect` by structured light, with noise, quantised disparity, "
-            "shadows, frayed edges and holes; `tof` by time of flight, with mixed depths at edges"
+            description="measuring principle. `kinect` is structured light, with noise, quantised "
+            "disparity, shadows, frayed edges and holes. `tof` is time of flight, with mixed "
+            "depths at edges"
         ),
     ] = "kinect"
     scale: Annotated[
@@ -322,20 +344,24 @@ class DepthConfig(LightConfig):
         Field(
             ge=0.0,
             le=100.0,
-            description="factor on the depth noise; 0 gives exact depth, with holes only beyond its range",
+            description="factor on the depth noise. With 0, depth is exact, and only pixels beyond the "
+            "range are empty",
         ),
     ] = 1.0
-    nearest_m: Annotated[float, Field(ge=0.0, le=FARTHEST_M, description="minimum measured depth")] = 0.5
-    farthest_m: Annotated[float, Field(gt=0.0, le=FARTHEST_M, description="maximum measured depth")] = 10.0
-    colour: Annotated[bool, Field(description="whether it also gives colour, registered with the depth")] = (
-        True
-    )
+    nearest_m: Annotated[float, Field(ge=0.0, le=FARTHEST_M, description="minimum measurable depth")] = 0.5
+    farthest_m: Annotated[float, Field(gt=0.0, le=FARTHEST_M, description="maximum measurable depth")] = 10.0
+    colour: Annotated[
+        bool, Field(description="whether the camera also provides colour, registered with the depth")
+    ] = True
     amplitude: Annotated[
         bool,
-        Field(description="sensor `tof`: whether it also gives the amplitude of the returned light"),
+        Field(
+            description="with sensor `tof`: whether the camera also provides the amplitude of the "
+            "returned light"
+        ),
     ] = False
     offset_m: Annotated[
-        float, Field(ge=0.0, le=0.1, description="largest fixed error of a pixel, the same in all images")
+        float, Field(ge=0.0, le=0.1, description="maximum constant error of a pixel, the same in all images")
     ] = 0.0
 
     def __post_init__(self) -> None:

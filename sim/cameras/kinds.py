@@ -192,10 +192,10 @@ class CameraKind:
 KINDS: Final[dict[str, CameraKind]] = {
     "thermal": CameraKind(
         config=ThermalConfig,
-        what="thermal images, in 8 bits and in hundredths of a kelvin",
+        what="thermal, with 8-bit images and 16-bit images in hundredths of a kelvin",
         presets=THERMAL_PRESETS,
-        presets_are="`uncooled`, with a plateau gain, sharpened edges, column noise, warm corners, drift and "
-        "a shutter; `uncooled_film`, the same with JPEG compression",
+        presets_are="`uncooled` has a plateau gain, sharpened edges, column noise, warm corners, drift "
+        "and a shutter; `uncooled_film` adds JPEG compression",
         sensor=ThermalSensor,
         layers=(),
         more_layers=_thermal_images,
@@ -210,7 +210,7 @@ KINDS: Final[dict[str, CameraKind]] = {
     ),
     "panorama": CameraKind(
         config=PanoramaConfig,
-        what="colour, 360 degrees",
+        what="360-degree colour",
         sensor=PanoramaSensor,
         renderer=PanoramicRenderer(),
         layers=(Layer(what="8-bit colour, 360 degrees, from the robot's back over left, front and right"),),
@@ -219,10 +219,11 @@ KINDS: Final[dict[str, CameraKind]] = {
     ),
     "depth": CameraKind(
         config=DepthConfig,
-        what="depth and visible light",
+        what="depth and colour",
         presets=DEPTH_PRESETS,
-        presets_are="`tof`, 176x144 by time of flight, pitched down by 12 degrees, with amplitude instead of "
-        "colour; `kinect`, 320x240; `kinect_rough`, the same with four times the noise",
+        presets_are="`tof` is a 176x144 time-of-flight camera, pitched down by 12 degrees, with "
+        "amplitude instead of colour; `kinect` has 320x240 pixels; `kinect_rough` is a `kinect` "
+        "with four times the noise",
         sensor=DepthSensor,
         layers=(Layer(what="16-bit, depth in millimetres, 0 for no reading", show=show_depth),),
         more_layers=_beside_depth,

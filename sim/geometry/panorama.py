@@ -19,7 +19,7 @@ from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mirror:
-    """The mirror of a panoramic camera: a cone, apex down, over a lens that looks straight up.
+    """The mirror of a panoramic camera: a cone with its apex down, above a lens that points straight up.
 
     In each direction the mirror's line is straight, so it shows what a camera without a mirror would see from
     the lens's mirror image. These images form a ring, whose cameras look outwards and down by `axis_rad`; the
@@ -35,7 +35,7 @@ class Mirror:
     half_apex_rad: Annotated[
         float,
         IN_DEGREES,
-        Field(gt=45.0, le=89.0, description="angle between the cone's axis and its surface"),
+        Field(gt=45.0, le=89.0, description="angle between the axis of the cone and its surface"),
     ] = math.radians(72.5)
     lens_half_angle_rad: Annotated[
         float,
@@ -43,14 +43,15 @@ class Mirror:
         Field(
             gt=0.0,
             le=85.0,
-            description="angle between the lens's axis and the rim of its image, where the view is highest",
+            description="angle between the optical axis of the lens and the rim of its image, where the "
+            "view is highest",
         ),
     ] = math.radians(47.0)
     lens_m: Annotated[
-        float, Field(gt=0.0, le=1.0, description="distance from the lens up to the cone's tip")
+        float, Field(gt=0.0, le=1.0, description="distance between the lens and the tip of the cone above it")
     ] = 0.04
     apex_m: Annotated[
-        float, Field(gt=0.0, le=10.0, description="height of the cone's tip above the floor")
+        float, Field(gt=0.0, le=10.0, description="height of the tip of the cone above the floor")
     ] = 1.68
 
     def __post_init__(self) -> None:
@@ -101,7 +102,7 @@ class Panorama:
     """
 
     width: Annotated[
-        int, Field(ge=16, le=4096, alias="width_px", description="columns of the image, over 360 degrees")
+        int, Field(ge=16, le=4096, alias="width_px", description="width of the image, over 360 degrees")
     ] = 480
     height: Annotated[
         int,
@@ -109,15 +110,15 @@ class Panorama:
             ge=16,
             le=4096,
             alias="height_px",
-            description="rows of the image, from the centre of the lens to its rim",
+            description="height of the image, from the centre of the lens image to its rim",
         ),
     ] = 120
     mirror: Annotated[
         Mirror,
         ByName(MIRRORS),
         Field(
-            description="mirror: `default` covers 8 to 55 degrees below the horizon, `narrow` 8 to 35; "
-            "or the geometry of another one"
+            description="mirror: `default` covers 8 to 55 degrees below the horizon, `narrow` covers 8 "
+            "to 35 degrees, and a mapping defines another mirror"
         ),
     ] = field(default_factory=Mirror)
 

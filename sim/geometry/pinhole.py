@@ -27,8 +27,8 @@ class Pinhole:
     -0.5 .. width - 0.5. Optical frame: x right, y down, z forward.
     """
 
-    width: Annotated[int, Field(ge=16, le=4096, alias="width_px", description="columns of the image")] = 320
-    height: Annotated[int, Field(ge=16, le=4096, alias="height_px", description="rows of the image")] = 240
+    width: Annotated[int, Field(ge=16, le=4096, alias="width_px", description="width of the image")] = 320
+    height: Annotated[int, Field(ge=16, le=4096, alias="height_px", description="height of the image")] = 240
     vertical_fov_rad: Annotated[
         float, IN_DEGREES, Field(ge=5.0, le=150.0, description="vertical field of view")
     ] = math.radians(44.0)
@@ -36,14 +36,14 @@ class Pinhole:
         Position,
         Field(
             alias="mount_m",
-            description="optical centre in the robot's frame: forward, left, up from the floor",
+            description="optical centre in the robot frame: forward, left, and up from the floor",
         ),
     ] = (0.14, 0.0, 1.2)
     pitch_rad: Annotated[
-        float, IN_DEGREES, Field(ge=-90.0, le=90.0, description="tilt; positive looks down")
+        float, IN_DEGREES, Field(ge=-90.0, le=90.0, description="pitch; positive points down")
     ] = 0.0
     yaw_rad: Annotated[
-        float, IN_DEGREES, Field(ge=-180.0, le=180.0, description="pan; positive looks left")
+        float, IN_DEGREES, Field(ge=-180.0, le=180.0, description="yaw; positive points left")
     ] = 0.0
 
     @property

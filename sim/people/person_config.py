@@ -40,7 +40,7 @@ _WORDS: Final[Mapping[Way, str]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reaction:
-    """Reaction of a person to a robot that comes near and is in sight; it repeats at each encounter.
+    """Reaction of a person to a robot that is near and in sight, at every encounter.
 
     Raises:
         BadInput: a value is out of range, or the reaction does not use it.
@@ -51,19 +51,21 @@ class Reaction:
         Way,
         Field(
             alias="as",
-            description="`ignores`: neither looks nor makes way, and stops only to avoid walking into the "
-            "robot; `makes_way`: walks round it, steps aside when it approaches, and looks at it; "
-            "`curious`: walks up to it, looks at it for a while, and goes on; `wary`: keeps clear of it, "
-            "walks away when it approaches, and looks back at it; `blocks`: steps into its way, "
-            "stands before it for a while, and goes on; `surprised`: stops and looks at it for a while, and "
-            "goes on",
+            description="`ignores`: does not look or make way, and stops only to avoid walking into the "
+            "robot; `makes_way`: walks round the robot, steps aside when it approaches, and "
+            "looks at it; `curious`: walks up to the robot, looks at it for a while, and walks "
+            "on; `wary`: keeps clear of the robot, walks away when it approaches, and looks back "
+            "at it; `blocks`: steps into the path of the robot, stands in front of it for a "
+            "while, and walks on; `surprised`: stops and looks at the robot for a while, and "
+            "walks on",
         ),
     ]
     from_m: Annotated[
         Meeting | None,
         Field(
-            description="distance at which an encounter begins; it ends 1 m farther away; default 3 for "
-            "`surprised`, 4 for `makes_way` and `blocks`, 5 for `curious` and `wary`; unused by `ignores`"
+            description="distance at which an encounter begins; it ends at a distance 1 m larger. The "
+            "default is 3 for `surprised`, 4 for `makes_way` and `blocks`, and 5 for `curious` "
+            "and `wary`; `ignores` does not use it"
         ),
     ] = None
     keep_m: Annotated[
@@ -71,16 +73,16 @@ class Reaction:
         Field(
             ge=0.6,
             le=8.0,
-            description="distance between the centres of person and robot: the minimum for `makes_way` "
-            "(default 1.2) and `wary` (2.5), approximate for `curious` (1.2) and `blocks` (1.0); unused by "
-            "others",
+            description="distance between the centres of person and robot. It is the minimum for "
+            "`makes_way` (default 1.2) and `wary` (2.5), and the approximate distance for "
+            "`curious` (1.2) and `blocks` (1.0); other reactions do not use it",
         ),
     ] = None
     lasts_s: Annotated[
         Lasting | None,
         Field(
-            description="how long the person looks (`curious`; default 5), blocks (`blocks`; 5) or stands "
-            "(`surprised`; 2.5); unused by others"
+            description="time for which the person looks (`curious`, default 5), blocks the path "
+            "(`blocks`, 5) or stops (`surprised`, 2.5); other reactions do not use it"
         ),
     ] = None
 
@@ -118,22 +120,24 @@ class Reaction:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lead:
-    """How a person leads the robot along its path: it looks back now and then, waits and calls.
+    """How a person leads the robot along a path. The person looks back now and then, waits and calls.
 
     Raises:
         BadInput: a value is out of range.
     """
 
-    follower: Annotated[Literal["robot"], Field(description="robot that follows")] = "robot"
+    follower: Annotated[Literal["robot"], Field(description="who follows the person")] = "robot"
     waits_beyond_m: Annotated[
         Meeting,
-        Field(description="distance beyond which the person stops for the robot, turns to it and calls it"),
+        Field(description="distance beyond which the person stops, turns to the robot and calls it"),
     ] = 4.5
     goes_on_within_m: Annotated[
-        Meeting, Field(description="distance within which the robot has caught up and the person goes on")
+        Meeting,
+        Field(description="distance within which the robot has caught up, so that the person walks on"),
     ] = 3.5
     at_most_s: Annotated[
-        Lasting, Field(description="longest wait; the person then goes on until the robot has caught up")
+        Lasting,
+        Field(description="maximum wait; after that, the person walks on until the robot has caught up"),
     ] = 20.0
 
     def __post_init__(self) -> None:
@@ -160,33 +164,34 @@ class Waypoint:
 
     at_m: Annotated[Point, Field(description="position")]
     speed_m_s: Annotated[
-        float, Field(ge=SPEEDS_M_S[0], le=SPEEDS_M_S[1], description="walking speed on the way to this point")
+        float, Field(ge=SPEEDS_M_S[0], le=SPEEDS_M_S[1], description="walking speed towards this point")
     ] = 1.2
-    pause_s: Annotated[Seconds, Field(description="how long the person stays there")] = 0.0
+    pause_s: Annotated[Seconds, Field(description="duration of the stay at this point")] = 0.0
     face: Annotated[
         Face | None,
         Field(
-            description="what the person faces in the pause: robot, another person's name, or a point; by "
-            "default the direction stays"
+            description="what the person faces during the pause: `robot`, the name of another person, or "
+            "a point; by default, the walking direction"
         ),
     ] = None
     until_robot_within_m: Annotated[
         Meeting | None,
         Field(
-            description="the pause also lasts until the robot is this near; without `face` the person faces "
-            "the robot; by default it does not wait for the robot"
+            description="the pause is extended until the robot is within this distance; by default, the "
+            "person does not wait for the robot. Without `face`, the person faces the robot"
         ),
     ] = None
     waits_at_most_s: Annotated[
-        float, Field(gt=0.0, le=3600.0, description="longest wait for the robot, after `pause_s`")
+        float, Field(gt=0.0, le=3600.0, description="maximum wait for the robot, after `pause_s`")
     ] = 60.0
     posture: Annotated[
         PostureName,
         Field(
-            description="posture during the pause: `standing` upright, arms at the sides; `sitting` as on a "
-            "chair, which may stand at that point; `bending` forward; `arms_raised`, both of them; "
-            "`arms_crossed` in front of the chest; `calling` with one arm raised, which waves, until the "
-            "robot is as near as `until_robot_within_m` says"
+            description="posture during the pause: `standing` is upright, with the arms at the sides; "
+            "`sitting` is as on a chair, and a chair may stand at that point; `bending` is bent "
+            "forward; `arms_raised` has both arms raised; `arms_crossed` has the arms crossed in "
+            "front of the chest; `calling` has one arm raised, which waves until the robot is "
+            "within `until_robot_within_m`"
         ),
     ] = Posture.STANDING
 
@@ -209,31 +214,35 @@ class WalkConfig:
             strict=False,
             min_length=1,
             max_length=500,
-            description="the points of the path, in order",
+            description="waypoints of the path, in order",
         ),
     ]
-    enter_s: Annotated[Seconds, Field(description="time of appearance, at the first waypoint")] = 0.0
+    enter_s: Annotated[
+        Seconds, Field(description="time at which the person appears, at the first waypoint")
+    ] = 0.0
     leave_s: Annotated[
         Seconds | None,
-        Field(description="time of disappearance; by default people stay at the last waypoint"),
+        Field(
+            description="time at which the person disappears; by default, people stay at the last waypoint"
+        ),
     ] = None
     yields: Annotated[
         bool,
         Field(
-            description="whether people give way to the robot and to each other; if not, they walk their "
-            "path exactly, and wait for a robot that is in their way"
+            description="whether people give way to the robot and to each other. Otherwise, they follow "
+            "their path exactly, and wait if the robot is in their way"
         ),
     ] = False
     group: Annotated[
         Name | None,
         Field(
-            description="name of a group that keeps together: people ahead wait for those behind; "
-            "all its paths have the same number of points"
+            description="name of a group that stays together: people in front wait for those behind. All "
+            "paths of the group must have the same number of points"
         ),
     ] = None
     reacts: Annotated[
         Reaction | None,
-        Field(description="reaction to the robot; none by default"),
+        Field(description="reaction to the robot; by default, none"),
     ] = None
 
     def __post_init__(self) -> None:
@@ -251,12 +260,12 @@ class WalkConfig:
 class ActorConfig(WalkConfig):
     """A person whose body is not specified yet."""
 
-    name: Annotated[Name, Field(description="unique name in the scenario")]
+    name: Annotated[Name, Field(description="name, unique in the scenario")]
     bag: Annotated[bool, Field(description="whether the person carries a bag")] = False
-    arms: Annotated[Arms, Field(description="what the arms do while walking")] = "swinging"
+    arms: Annotated[Arms, Field(description="position of the arms while walking")] = "swinging"
     leads: Annotated[
         Lead | None,
-        Field(description="how the person leads the robot along its path; by default it does not"),
+        Field(description="how the person leads the robot along the path; by default, the person does not"),
     ] = None
 
     def __post_init__(self) -> None:
@@ -277,10 +286,10 @@ class PersonConfig(ActorConfig):
         BadInput: a value is out of range or contradicts another; with the person's name.
     """
 
-    height_m: Annotated[float, Field(ge=1.5, le=2.0, description="from the floor to the top of the head")] = (
-        1.75
-    )
-    sex: Annotated[Sex, Field(description="determines proportions and the default height")] = "male"
+    height_m: Annotated[
+        float, Field(ge=1.5, le=2.0, description="height from the floor to the top of the head")
+    ] = 1.75
+    sex: Annotated[Sex, Field(description="sex; determines proportions and the default height")] = "male"
     build: Annotated[Build, Field(description="body width relative to height")] = "average"
     clothes: Annotated[Clothes, Field(description="clothes of the person")] = field(default_factory=Clothes)
 

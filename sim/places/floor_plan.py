@@ -159,21 +159,26 @@ class Door:
     wall: Annotated[
         Word,
         Field(
-            description="name of the wall: north, south, east or west; in L and T corridors with the leg, "
-            "as in first_north"
+            description="wall of the door: `north`, `south`, `east` or `west`; in L and T corridors, "
+            "these names follow that of the leg, as in `first_north`"
         ),
     ]
     along_m: Annotated[
         Coordinate,
         Field(
-            description="centre of the door: world x in a north or south wall, world y in an east or west "
-            "wall"
+            description="centre of the door: world x in a north or south wall, world y in an east or "
+            "west wall"
         ),
     ]
     width_m: Annotated[float, Field(ge=0.7, le=4.0, description="width of the opening")] = 0.95
     height_m: Annotated[float, Field(ge=1.9, le=3.0, description="height of the opening")] = 2.05
     is_open: Annotated[
-        bool, Field(alias="open", description="a closed door is a leaf on the wall without a lobby behind")
+        bool,
+        Field(
+            alias="open",
+            description="whether the door is open; a closed door is a leaf on the "
+            "wall, with no lobby behind it",
+        ),
     ] = True
     lobby_m: Annotated[float, Field(ge=1.0, le=6.0, description="depth of the lobby behind an open door")] = (
         1.5

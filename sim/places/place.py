@@ -45,13 +45,14 @@ class Fixture:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sun:
-    """Position of the sun, and its effect on floor and walls that it reaches through windows."""
+    """The sun, and its effect on floor and walls that it reaches through windows."""
 
-    azimuth_deg: Annotated[Degrees, Field(description="azimuth: 0 is along x, 90 along y")]
+    azimuth_deg: Annotated[Degrees, Field(description="azimuth; 0 is the direction of x, and 90 that of y")]
     elevation_deg: Annotated[float, Field(ge=5.0, le=85.0, description="elevation above the horizon")]
     warms_k: Annotated[float, Field(ge=0.0, le=40.0, description="temperature rise of sunlit surfaces")] = 8.0
     brightens: Annotated[
-        float, Field(ge=0.0, le=5.0, description="brightness rise, as a share of the light without sun")
+        float,
+        Field(ge=0.0, le=5.0, description="increase in brightness, as a share of the light without sun"),
     ] = 0.9
 
     @property

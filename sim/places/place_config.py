@@ -30,31 +30,40 @@ def _follow_air(given: Any) -> Any:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Temperatures:
-    """Surface temperatures of the place itself."""
+    """Surface temperatures of the place, without its objects."""
 
     air_c: Annotated[
         Celsius | None,
         Field(
-            description="temperature of the air: floor, ceiling, walls, surroundings, and unheated objects "
-            "follow it unless they have their own temperature; if omitted, defaults for 21 degC apply"
+            description="air temperature. Floor, ceiling, walls, surroundings and unheated objects "
+            "follow it, unless they have their own temperature. By default, the values below for "
+            "air of 21 degC apply"
         ),
     ] = None
     floor_c: Annotated[Celsius, Field(description="temperature of the floor")] = 20.0
     ceiling_c: Annotated[Celsius, Field(description="temperature of the ceiling")] = 22.8
-    walls_c: Annotated[Celsius, Field(description="all walls that are not in `single_walls_c`")] = 21.5
+    walls_c: Annotated[
+        Celsius, Field(description="temperature of all walls that are not in `single_walls_c`")
+    ] = 21.5
     single_walls_c: Annotated[
         dict[Word, Celsius],
         Field(
             max_length=200,
-            description="temperatures of single walls by name, such as an outer wall in winter",
+            description="temperatures of individual walls by name, such as an outer wall in winter",
         ),
     ] = field(default_factory=dict)
-    surroundings_c: Annotated[Celsius, Field(description="reflected by surfaces of low emissivity")] = 21.0
+    surroundings_c: Annotated[
+        Celsius,
+        Field(description="temperature of the surroundings, which surfaces of low emissivity reflect"),
+    ] = 21.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Colours:
-    """Colours of the place itself: names, or linear red, green and blue from 0 to 1."""
+    """Colours of the place, without its objects.
+
+    A colour is a name, or linear red, green and blue from 0 to 1.
+    """
 
     floor: Annotated[Colour | None, Field(description="colour of the floor")] = None
     ceiling: Annotated[Colour | None, Field(description="colour of the ceiling")] = None
@@ -66,10 +75,12 @@ class Colours:
 class AnyPlaceConfig:
     """Settings of all places."""
 
-    width_m: Annotated[float, Field(ge=1.2, le=60.0, description="width; in L and T corridors, of both legs")]
+    width_m: Annotated[
+        float, Field(ge=1.2, le=60.0, description="width; in L and T corridors, that of both legs")
+    ]
     height_m: Annotated[float, Field(ge=2.2, le=8.0, description="height of the ceiling")] = 2.7
     doors: Annotated[
-        tuple[Door, ...], Field(strict=False, max_length=100, description="openings in the walls")
+        tuple[Door, ...], Field(strict=False, max_length=100, description="doors in the walls")
     ] = ()
     temperatures: Annotated[
         Temperatures, BeforeValidator(_follow_air), Field(description="surface temperatures")
@@ -78,18 +89,18 @@ class AnyPlaceConfig:
     floor_shine: Annotated[
         Share,
         Field(
-            description="specular share of the floor's reflection, from 0, a carpet, to 1, polished stone; "
-            "visible with `detail: full`"
+            description="specular share of the reflection of the floor, from 0 (carpet) to 1 (polished "
+            "stone); visible with `detail: full`"
         ),
     ] = 0.3
     sun: Annotated[
-        Sun | None, Field(description="the sun, visible with `detail: full` only; none by default")
+        Sun | None, Field(description="sun; by default, none. It is visible with `detail: full` only")
     ] = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class RoomConfig(AnyPlaceConfig):
-    """A rectangular room: x from 0 to length, y to half the width on either side."""
+    """A rectangular room. x is 0 to `length_m`, and y is up to half the width on either side."""
 
     kind: Annotated[Literal["room"], Field(description="a rectangular room")]
     length_m: Annotated[Length, Field(description="length along x")]
@@ -101,7 +112,7 @@ class RoomConfig(AnyPlaceConfig):
 
 @dataclass(frozen=True, kw_only=True)
 class CorridorConfig(AnyPlaceConfig):
-    """A straight corridor: x from 0 to length, y to half the width on either side."""
+    """A straight corridor. x is 0 to `length_m`, and y is up to half the width on either side."""
 
     kind: Annotated[Literal["corridor"], Field(description="a straight corridor")]
     length_m: Annotated[Length, Field(description="length along x")]
@@ -113,11 +124,11 @@ class CorridorConfig(AnyPlaceConfig):
 
 @dataclass(frozen=True, kw_only=True)
 class LCorridorConfig(AnyPlaceConfig):
-    """A corridor along x from 0 with a corner at its end."""
+    """A corridor that starts at x = 0 and runs along x, with a corner at its end."""
 
     kind: Annotated[Literal["l_corridor"], Field(description="a corridor with a corner")]
-    first_m: Annotated[Length, Field(description="length of the first leg, with the corner")]
-    second_m: Annotated[Length, Field(description="length of the second leg beyond the first one's side")]
+    first_m: Annotated[Length, Field(description="length of the first leg, including the corner")]
+    second_m: Annotated[Length, Field(description="length of the second leg beyond the side of the first")]
     turn: Annotated[Literal["left", "right"], Field(description="direction of the second leg")] = "left"
 
     def areas(self) -> FloorPlan:
@@ -132,11 +143,15 @@ class LCorridorConfig(AnyPlaceConfig):
 
 @dataclass(frozen=True, kw_only=True)
 class TCorridorConfig(AnyPlaceConfig):
-    """A corridor along x from 0 that ends in the middle of a corridor along y."""
+    """A corridor that starts at x = 0, runs along x, and ends in the middle of a corridor along y."""
 
     kind: Annotated[Literal["t_corridor"], Field(description="a corridor with a junction at its end")]
-    stem_m: Annotated[Length, Field(description="length of the corridor along x, up to the bar")]
-    bar_m: Annotated[Length, Field(description="length of the corridor along y in which the stem ends")]
+    stem_m: Annotated[
+        Length, Field(description="length of the corridor along x (the stem), up to the corridor along y")
+    ]
+    bar_m: Annotated[
+        Length, Field(description="length of the corridor along y (the bar), in which the stem ends")
+    ]
 
     def areas(self) -> FloorPlan:
         """Lay out the floor without doors.
@@ -150,20 +165,20 @@ class TCorridorConfig(AnyPlaceConfig):
 
 @dataclass(frozen=True, kw_only=True)
 class StreetConfig(AnyPlaceConfig):
-    """A street along x from 0, y to half the width on either side: a road between two pavements, and sky."""
+    """A street: a road between two pavements, with x from 0 and y up to half the width on either side."""
 
-    kind: Annotated[Literal["street"], Field(description="a street, with houses and sky")]
+    kind: Annotated[Literal["street"], Field(description="a street with houses and sky")]
     length_m: Annotated[float, Field(ge=5.0, le=40.0, description="length along x")]
     houses: Annotated[
         Literal["both", "north", "south", "none"],
-        Field(description="sides with house fronts, which contain the doors"),
+        Field(description="sides of the street that have houses; doors are in the house fronts"),
     ] = "both"
     house_m: Annotated[float, Field(ge=4.0, le=20.0, description="height of the houses")] = 10.0
     sky_c: Annotated[
         Celsius,
         Field(
-            description="apparent temperature of the sky at the horizon; overhead it is 15 K colder, and "
-            "clouds are warmer"
+            description="apparent temperature of the sky at the horizon; the sky overhead is 15 K "
+            "colder, and clouds are warmer"
         ),
     ] = 5.0
 

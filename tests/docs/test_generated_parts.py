@@ -120,7 +120,7 @@ def test_every_part_is_asked_for_by_one_page() -> None:
 
 def test_a_part_is_made_anew_in_its_place_and_once_only() -> None:
     once = fill_in("before\n<!-- generated: walls -->old<!-- end -->\nafter")
-    assert once.startswith("before\n<!-- generated: walls -->\n\n| place | its walls |")
+    assert once.startswith("before\n<!-- generated: walls -->\n\n| place | walls |")
     assert once.endswith("|\n\n<!-- end -->\nafter")
     assert "old" not in once
     assert fill_in(once) == once

@@ -136,10 +136,10 @@ class Clothes:
         BadInput: a garment or colour is not in the catalogue.
     """
 
-    top: Annotated[TopName, Field(description="garment of the upper body")] = "shirt"
-    bottom: Annotated[BottomName, Field(description="garment of the lower body")] = "trousers"
+    top: Annotated[TopName, Field(description="upper garment")] = "shirt"
+    bottom: Annotated[BottomName, Field(description="lower garment")] = "trousers"
     shoes: Annotated[ShoesName, Field(description="shoes")] = "leather_shoes"
-    hair: Annotated[HairName, Field(description="hair, or a cap on it")] = "short"
+    hair: Annotated[HairName, Field(description="hair style, or a cap")] = "short"
     top_colour: Annotated[Colour | None, Field(description="colour of the top")] = None
     bottom_colour: Annotated[Colour | None, Field(description="colour of the bottom")] = None
     hair_colour: Annotated[Colour | None, Field(description="colour of the hair")] = None

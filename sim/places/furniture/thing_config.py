@@ -36,32 +36,36 @@ class PatternConfig:
     ]
     period_m: Annotated[
         float,
-        Field(ge=0.01, le=10.0, description="width of a pair of stripes, of two checks, or size of a patch"),
+        Field(ge=0.01, le=10.0, description="width of two stripes or of two checks, or the size of a patch"),
     ] = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ActionConfig:
-    """A move of an object, by itself or by a person's hand."""
+    """A movement of an object, either on its own or in the hand of a person."""
 
     at_s: Annotated[float, Field(le=36000.0, description="start of the action")]
     kind: Annotated[
         ActionName,
         Field(
-            description="`appear` and `vanish` at once; `glide` to another place, also up and down; `turn` "
-            "about a hinge, as a door; `slide` forwards or backwards, as a drawer"
+            description="`appear` and `vanish` take no time. `glide` moves the object to another "
+            "position, including up or down. `turn` rotates it about a hinge, like a door. "
+            "`slide` moves it forwards or backwards, like a drawer"
         ),
     ]
     to_m: Annotated[
         Point | None,
-        Field(description="position afterwards; by default unchanged"),
+        Field(description="position after the action; by default, unchanged"),
     ] = None
     base_m: Annotated[
-        float | None, Field(ge=0.0, le=8.0, description="height of its base afterwards; by default unchanged")
+        float | None,
+        Field(ge=0.0, le=8.0, description="height of the base after the action; by default, unchanged"),
     ] = None
     facing_deg: Annotated[
         Degrees | None,
-        Field(description="orientation afterwards, by the shorter rotation; by default unchanged"),
+        Field(
+            description="orientation after the action, reached by the shorter rotation; by default, unchanged"
+        ),
     ] = None
     takes_s: Annotated[
         float | None, Field(le=600.0, description="duration of a `glide`, `turn` or `slide`")
@@ -72,7 +76,7 @@ class ActionConfig:
     ] = None
     by: Annotated[
         Name | None,
-        Field(description="name of the person who moves the object, and who must be within reach"),
+        Field(description="name of the person who moves the object; the person must be within reach"),
     ] = None
 
 
@@ -82,32 +86,36 @@ class ThingConfig:
 
     kind: Annotated[ThingKind, Field(description="kind of object")]
     name: Annotated[
-        Name | None, Field(description="name; by default the kind and a number, such as radiator_1")
+        Name | None,
+        Field(description="name of the object; by default, its kind and a number, such as `radiator_1`"),
     ] = None
-    at_m: Annotated[Point | None, Field(description="position on the floor; not together with `wall`")] = None
-    wall: Annotated[Word | None, Field(description="wall on which it hangs or against which it stands")] = (
-        None
-    )
+    at_m: Annotated[
+        Point | None, Field(description="position on the floor; cannot be combined with `wall`")
+    ] = None
+    wall: Annotated[Word | None, Field(description="wall that the object hangs on or stands against")] = None
     along_m: Annotated[
         Coordinate | None,
         Field(
-            description="position along that wall: world x of north or south walls, world y of east or west "
-            "walls"
+            description="position along that wall: world x for a north or south wall, world y for an "
+            "east or west wall"
         ),
     ] = None
-    on_top_of: Annotated[Name | None, Field(description="name of the object on which it stands")] = None
+    on_top_of: Annotated[Name | None, Field(description="name of the object that it stands on")] = None
     base_m: Annotated[
         float | None,
-        Field(ge=0.0, le=8.0, description="height of its base; default by kind"),
+        Field(ge=0.0, le=8.0, description="height of the base; the default depends on the kind"),
     ] = None
     facing_deg: Annotated[
-        Degrees, Field(description="orientation of its front; an object on a wall faces into the place")
+        Degrees, Field(description="orientation of the front; an object on a wall faces away from the wall")
     ] = 0.0
-    size_m: Annotated[Size | None, Field(description="depth, width, height")] = None
+    size_m: Annotated[
+        Size | None, Field(description="depth, width and height; the default depends on the kind")
+    ] = None
     temperature_c: Annotated[
         Celsius | None,
         Field(
-            description="temperature of the main surface; default by kind; thermal cameras measure up to 160"
+            description="temperature of the main surface; the default depends on the kind. Thermal "
+            "cameras measure up to 160"
         ),
     ] = None
     emissivity: Annotated[
@@ -115,17 +123,21 @@ class ThingConfig:
         Field(
             gt=0.0,
             le=1.0,
-            description="emissivity of the main surface; the rest to 1 reflects the surroundings",
+            description="emissivity of the main surface; the surface reflects the surroundings with 1 "
+            "minus this value",
         ),
     ] = 0.93
     shine: Annotated[
         Share | None,
         Field(
-            description="specular share of the main surface's reflection, from 0, dull, to 1, glass; "
-            "visible with `detail: full` on flat sides; default by kind"
+            description="specular share of the reflection of the main surface, from 0 (dull) to 1 "
+            "(glass). It is visible with `detail: full` on flat sides; the default depends on "
+            "the kind"
         ),
     ] = None
-    colour: Annotated[Colour | None, Field(description="colour of the main surface; default by kind")] = None
+    colour: Annotated[
+        Colour | None, Field(description="colour of the main surface; the default depends on the kind")
+    ] = None
     pattern: Annotated[
         PatternConfig, Field(description="pattern of the main surface, visible to the colour camera")
     ] = field(default_factory=lambda: PatternConfig(kind="plain"))
@@ -134,16 +146,19 @@ class ThingConfig:
         Field(
             min_length=1,
             max_length=200,
-            description="for kind `urdf`: a file of pybullet_data, or one in the scenario file's folder",
+            description="for kind `urdf`: name of a file in pybullet_data or in the folder of the "
+            "scenario file",
         ),
     ] = None
-    hidden_at_start: Annotated[bool, Field(description="whether it is absent until it appears")] = False
+    hidden_at_start: Annotated[
+        bool, Field(description="whether the object is absent until an action makes it appear")
+    ] = False
     actions: Annotated[
         tuple[ActionConfig, ...],
         Field(
             strict=False,
             max_length=100,
-            description="moves of the object, in order of time; requires a name",
+            description="actions of the object, in order of time; they require a `name`",
         ),
     ] = ()
-    scale: Annotated[float, Field(ge=0.001, le=1000.0, description="scale factor of a `urdf`")] = 1.0
+    scale: Annotated[float, Field(ge=0.001, le=1000.0, description="for kind `urdf`: scale factor")] = 1.0
