@@ -42,13 +42,15 @@ class ComfortScore(ScoreRecord):
 
     personal_s: float = metric("within 1.2 m", "s", "time with a person in personal space")
     intimate_s: float = metric("within 0.45 m", "s", "time with a person in intimate space")
-    personal_intrusions: float = metric("intrusions, 1.2 m", "", "entries into personal space")
-    intimate_intrusions: float = metric("intrusions, 0.45 m", "", "entries into intimate space")
+    personal_intrusions: float = metric("intrusions, 1.2 m", "", "number of entries into personal space")
+    intimate_intrusions: float = metric("intrusions, 0.45 m", "", "number of entries into intimate space")
     min_time_to_collision_s: float = metric(
-        "time to collision", "s", "minimum over the run, at constant velocities"
+        "time to collision", "s", "minimum during the run, assuming constant velocities"
     )
-    jerk_m_s3: float = metric("jerk", "m/s3", "forward jerk of the robot, root mean square")
-    felt_jerk_m_s3: float = metric("jerk felt", "m/s3", "the same while a person is within 3.6 m")
+    jerk_m_s3: float = metric("jerk", "m/s3", "root mean square of the forward jerk of the robot")
+    felt_jerk_m_s3: float = metric(
+        "jerk felt", "m/s3", "root mean square of the jerk while a person is within 3.6 m"
+    )
 
 
 def score_comfort(run: DriveRecord) -> ComfortScore:

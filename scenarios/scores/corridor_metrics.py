@@ -42,13 +42,15 @@ class CorridorScore(ScoreRecord):
     never on a leg. The angle to the centre line [rad] is independent of the driving direction.
     """
 
-    lateral_rms_m: float = metric("lateral error RMS", "m", "distance to the centre line, root mean square")
-    lateral_max_m: float = metric("lateral error max", "m", "largest distance to the centre line")
+    lateral_rms_m: float = metric(
+        "lateral error RMS", "m", "root mean square of the distance to the centre line"
+    )
+    lateral_max_m: float = metric("lateral error max", "m", "maximum distance to the centre line")
     heading_error_rad: float = metric("heading error", "deg", "mean angle to the centre line")
-    contacts: int = metric("contacts", "", "contacts that start during the run")
+    contacts: int = metric("contacts", "", "number of contacts that start during the run")
     mean_speed_m_s: float = metric("mean speed", "m/s", "distance driven divided by time")
-    way_m: float = metric("distance driven", "m", "over the run")
-    legs: int = metric("legs", "", "straight corridor sections that the robot drove along")
+    way_m: float = metric("distance driven", "m", "distance driven during the run")
+    legs: int = metric("legs", "", "number of straight corridor sections that the robot drove along")
 
 
 def score_corridor(run: DriveRecord, legs: Sequence[Leg]) -> CorridorScore:

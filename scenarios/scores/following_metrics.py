@@ -60,25 +60,47 @@ class FollowingScore(ScoreRecord):
     is first in the band. `wrong_person_s` is NaN if the followed person is unknown.
     """
 
-    found: bool = metric("found", "", "1 if the person was ever tracked")
-    time_to_find_s: float = metric("time to find", "s", "from the start to the first track")
-    followed: float = metric("followed", "%", "share of the time since found in which the person is tracked")
-    in_band: float = metric("in band", "%", "share of the time since found at a good distance")
-    facing: float = metric("facing", "%", "share of the time since found in which the robot faces the person")
-    in_band_and_facing: float = metric("in band and facing", "%", "share of the time since found with both")
-    mean_distance_error_m: float = metric("distance error", "m", "mean absolute distance error since found")
-    rms_distance_error_m: float = metric("distance error RMS", "m", "root mean square of that error")
-    min_distance_m: float = metric(
-        "nearest", "m", "smallest distance to the person to follow, centre to centre"
+    found: bool = metric("found", "", "1 if the person was tracked at least once, otherwise 0")
+    time_to_find_s: float = metric(
+        "time to find", "s", "time from the start to the first track of the person"
     )
-    collisions: int = metric("collisions", "", "contacts that start during the run")
-    times_lost: int = metric("times lost", "", "periods without a track since found")
-    longest_lost_s: float = metric("longest lost", "s", "longest period without a track since found")
-    followed_to_end: bool = metric("to the end", "", "1 if the right person was followed at the end")
-    path_efficiency: float = metric("path efficiency", "%", "straight distance to the band / distance driven")
-    mean_heading_error_rad: float = metric("heading error", "deg", "mean absolute heading error since found")
+    followed: float = metric("followed", "%", "share of the time with a track, since the person was found")
+    in_band: float = metric(
+        "in band", "%", "share of the time at a good distance, since the person was found"
+    )
+    facing: float = metric("facing", "%", "share of the time facing the person, since the person was found")
+    in_band_and_facing: float = metric(
+        "in band and facing", "%", "share of the time with both, since the person was found"
+    )
+    mean_distance_error_m: float = metric(
+        "distance error", "m", "mean absolute distance error, since the person was found"
+    )
+    rms_distance_error_m: float = metric(
+        "distance error RMS", "m", "root mean square of the distance error, since the person was found"
+    )
+    min_distance_m: float = metric(
+        "nearest", "m", "minimum distance to the person to follow, between centres"
+    )
+    collisions: int = metric("collisions", "", "number of contacts that start during the run")
+    times_lost: int = metric(
+        "times lost", "", "number of periods without a track, since the person was found"
+    )
+    longest_lost_s: float = metric(
+        "longest lost", "s", "longest period without a track, since the person was found"
+    )
+    followed_to_end: bool = metric(
+        "to the end", "", "1 if the robot followed the right person at the end, otherwise 0"
+    )
+    path_efficiency: float = metric(
+        "path efficiency", "%", "straight distance to the band, divided by the distance driven"
+    )
+    mean_heading_error_rad: float = metric(
+        "heading error", "deg", "mean absolute heading error, since the person was found"
+    )
     wrong_person_s: float = metric("wrong person", "s", "time spent following another person")
-    identity_changes: int = metric("identity changes", "", "changes of the id of the person's track")
+    identity_changes: int = metric(
+        "identity changes", "", "number of changes of the id of the person's track"
+    )
 
 
 def score_following(run: DriveRecord, task: FollowingTask | None = None) -> FollowingScore:

@@ -79,50 +79,97 @@ class SpreadRow:
 
 
 FIGURES: tuple[Figure, ...] = (
-    Figure("CR", "%", "thesis.cr", "Count recall: people found, as a share of the people to find."),
-    Figure("CP", "%", "thesis.cp", "Count precision: boxes on a person, as a share of all boxes."),
-    Figure("CA", "%", "thesis.ca", "Count accuracy: combines CR and CP."),
-    Figure("AR", "%", "thesis.ar", "Area recall: share of a person's box that its match covers."),
-    Figure("AP", "%", "thesis.ap", "Area precision: share of a tracker's box that lies on its person."),
-    Figure("AA", "%", "thesis.aa", "Area accuracy: combines AR and AP."),
+    Figure("CR", "%", "thesis.cr", "Count recall: share of the people to find that have a matching box."),
+    Figure("CP", "%", "thesis.cp", "Count precision: share of all boxes that match a person."),
+    Figure("CA", "%", "thesis.ca", "Count accuracy: harmonic mean of CR and CP."),
+    Figure("AR", "%", "thesis.ar", "Area recall: share of a person's box that the matching box covers."),
+    Figure("AP", "%", "thesis.ap", "Area precision: share of a tracker's box inside the box of its person."),
+    Figure("AA", "%", "thesis.aa", "Area accuracy: Dice coefficient of the areas, which combines AR and AP."),
     Figure("OC", "%", "paper.oc", "Overlap coefficient: share of a person's frames that its track covers."),
-    Figure("DC", "%", "paper.dc", "Dice coefficient: like OC, penalising frames outside the person's own."),
-    Figure("OCR", "%", "paper.ocr", "Object count recall: boxes per person to find, wherever the boxes are."),
     Figure(
-        "OCP", "%", "paper.ocp", "Object count precision: people to find per box, wherever the boxes are."
+        "DC", "%", "paper.dc", "Dice coefficient: like OC, but lower if a track continues without its person."
     ),
-    Figure("OCA", "%", "paper.oca", "Object count accuracy: combines OCR and OCP."),
-    Figure("OAR", "%", "paper.oar", "Object area recall: AR without the IoU threshold of 0.5."),
-    Figure("BAP", "%", "paper.bap", "Box area precision: AP without the IoU threshold of 0.5."),
-    Figure("ADC", "%", "paper.adc", "Area Dice coefficient: AA without the IoU threshold of 0.5."),
+    Figure("OCR", "%", "paper.ocr", "Object count recall: boxes per person to find, regardless of position."),
     Figure(
-        "MOTA", "%", "mot.clear.mota", "100 minus false negatives, false positives and switches, per person."
+        "OCP", "%", "paper.ocp", "Object count precision: people to find per box, regardless of position."
+    ),
+    Figure("OCA", "%", "paper.oca", "Object count accuracy: harmonic mean of OCR and OCP."),
+    Figure("OAR", "%", "paper.oar", "Object area recall: like AR, but without an IoU threshold."),
+    Figure("BAP", "%", "paper.bap", "Box area precision: like AP, but without an IoU threshold."),
+    Figure("ADC", "%", "paper.adc", "Area Dice coefficient: like AA, but without an IoU threshold."),
+    Figure(
+        "MOTA",
+        "%",
+        "mot.clear.mota",
+        "100 minus false negatives, false positives and id switches per person.",
     ),
     Figure("MOTP", "%", "mot.clear.motp", "Mean IoU of matched boxes."),
-    Figure("FN", "", "mot.clear.misses", "False negatives: people without a box of IoU 0.5."),
-    Figure("FP", "", "mot.clear.false_positives", "False positives: boxes without a person of IoU 0.5."),
-    Figure("IDSW", "", "mot.clear.switches", "Identity switches: a person's track gets another id."),
-    Figure("IDF1", "%", "mot.identity.idf1", "Identity F1: combines IDP and IDR over the whole sequence."),
-    Figure("IDP", "%", "mot.identity.idp", "Identity precision: boxes on the person of their track."),
-    Figure("IDR", "%", "mot.identity.idr", "Identity recall: people with a box of their track."),
-    Figure("HOTA", "%", "mot.hota.hota", "Geometric mean of DetA and AssA, averaged over IoU 0.05 to 0.95."),
-    Figure("DetA", "%", "mot.hota.deta", "Detection accuracy: matches per match or error."),
-    Figure("AssA", "%", "mot.hota.assa", "Association accuracy: consistency of ids over matched boxes."),
+    Figure("FN", "", "mot.clear.misses", "False negatives: people without a box of IoU 0.5 or more."),
+    Figure(
+        "FP", "", "mot.clear.false_positives", "False positives: boxes without a person of IoU 0.5 or more."
+    ),
+    Figure(
+        "IDSW", "", "mot.clear.switches", "Identity switches: changes of the track id that matches a person."
+    ),
+    Figure(
+        "IDF1",
+        "%",
+        "mot.identity.idf1",
+        "Identity F1: harmonic mean of IDP and IDR, over the whole sequence.",
+    ),
+    Figure(
+        "IDP",
+        "%",
+        "mot.identity.idp",
+        "Identity precision: share of boxes on the person assigned to their track.",
+    ),
+    Figure(
+        "IDR", "%", "mot.identity.idr", "Identity recall: share of people with a box of their assigned track."
+    ),
+    Figure(
+        "HOTA",
+        "%",
+        "mot.hota.hota",
+        "Geometric mean of DetA and AssA, averaged over IoU thresholds 0.05 to 0.95.",
+    ),
+    Figure(
+        "DetA", "%", "mot.hota.deta", "Detection accuracy: matches divided by the sum of matches and errors."
+    ),
+    Figure(
+        "AssA", "%", "mot.hota.assa", "Association accuracy: consistency of track ids over matched boxes."
+    ),
     Figure("mean error", "m", "floor.mean_m", "Mean distance between estimated and true positions."),
-    Figure("median error", "m", "floor.median_m", "Median of that distance."),
-    Figure("95 % error", "m", "floor.p95_m", "95th percentile of that distance."),
-    Figure("NEES", "", "floor.nees", "Normalised estimation error squared; 2 if covariances are consistent."),
-    Figure("in ellipse", "%", "floor.inside", "Matches within the 95 % ellipse of the estimated covariance."),
-    Figure("frames", "", "counts.frames", "Frames of the sequence, with or without people."),
-    Figure("targets", "", "counts.targets", "Boxes of people to find."),
-    Figure("candidates", "", "counts.candidates", "Boxes of the tracker that were scored."),
-    Figure("ignored", "", "counts.ignored", "Further boxes, on people who do not count."),
-    Figure("matches", "", "counts.matches", "Boxes on a person, with IoU above 0.5."),
-    Figure("misses", "", "counts.misses", "People to find without such a box."),
-    Figure("false_alarms", "", "counts.false_alarms", "Boxes without such a person."),
-    Figure("tracks", "", "counts.tracks", "Track ids."),
-    Figure("true_tracks", "", "counts.true_tracks", "Track ids that match a person in at least one frame."),
-    Figure("false_tracks", "", "counts.false_tracks", "Track ids that match no person in any frame."),
+    Figure("median error", "m", "floor.median_m", "Median distance between estimated and true positions."),
+    Figure(
+        "95 % error",
+        "m",
+        "floor.p95_m",
+        "95th percentile of the distance between estimated and true positions.",
+    ),
+    Figure("NEES", "", "floor.nees", "Normalised estimation error squared; 2 for consistent covariances."),
+    Figure(
+        "in ellipse",
+        "%",
+        "floor.inside",
+        "Share of matches within the 95 % ellipse of the estimated covariance.",
+    ),
+    Figure("frames", "", "counts.frames", "Number of frames, with or without people."),
+    Figure("targets", "", "counts.targets", "Number of boxes of people to find."),
+    Figure("candidates", "", "counts.candidates", "Number of tracker boxes that are scored."),
+    Figure("ignored", "", "counts.ignored", "Number of other tracker boxes, on people who are ignored."),
+    Figure("matches", "", "counts.matches", "Number of boxes that match a person, with an IoU above 0.5."),
+    Figure("misses", "", "counts.misses", "Number of people to find without a matching box."),
+    Figure("false_alarms", "", "counts.false_alarms", "Number of boxes that match no person."),
+    Figure("tracks", "", "counts.tracks", "Number of track ids."),
+    Figure(
+        "true_tracks",
+        "",
+        "counts.true_tracks",
+        "Number of track ids that match a person in at least one frame.",
+    ),
+    Figure(
+        "false_tracks", "", "counts.false_tracks", "Number of track ids that match no person in any frame."
+    ),
 )
 
 # They depend on boxes elsewhere, which cannot be judged where only one person is annotated.
