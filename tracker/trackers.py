@@ -125,9 +125,10 @@ def _fused_tracker(rng: "np.random.Generator") -> "FusedTracker":
 
 @TRACKERS.register(
     DETECTION_TRACKER,
-    scope="the default: any camera, any room, recorded video",
-    summary="A detector trained on rendered random worlds only, and a Kalman filter in metres for each "
-    "person. Needs contrast, not temperatures; re-identifies people by the colours of their clothes.",
+    scope="default tracker; for any camera and room, and for recorded video",
+    summary="Detects people with a detector that was trained on rendered random worlds only, and tracks "
+    "each person with a Kalman filter in metres. Needs contrast, but not temperatures. "
+    "Re-identifies people by the colours of their clothes.",
 )
 def _detection(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.sensors.thermal import ThermalSensor
@@ -138,9 +139,10 @@ def _detection(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
 
 @TRACKERS.register(
     CONTOUR_TRACKER,
-    scope="thesis, chapters 4 to 7, and beyond",
-    summary="A particle filter for each person, with contour, colour and thermal appearance. Overlapping "
-    "people are sorted by depth, the ones in front are explained away, occluded people coast. Uses odometry.",
+    scope="thesis, chapters 4 to 7, with extensions",
+    summary="Tracks each person with a particle filter, using contour, colour and thermal appearance. "
+    "Sorts overlapping people by depth, ignores evidence from the people in front, and lets "
+    "occluded people coast. Uses odometry.",
 )
 def _contour(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker(CONTOUR_TRACKER, rng)
@@ -148,8 +150,9 @@ def _contour(rng: "np.random.Generator") -> Tracker:
 
 @TRACKERS.register(
     "learned",
-    scope="the same, trained",
-    summary="`contour`, but the classifier of `peopleboy train occlusion` decides which person is in front.",
+    scope="thesis, chapters 4 to 7, with extensions",
+    summary="Like `contour`, but the classifier of `peopleboy train occlusion` decides which person is "
+    "in front.",
 )
 def _learned(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("learned", rng)
@@ -158,8 +161,8 @@ def _learned(rng: "np.random.Generator") -> Tracker:
 @TRACKERS.register(
     "thesis",
     scope="thesis, chapters 4 to 7",
-    summary="A literal reimplementation: independent filters, colour moments, and a boosted classifier that "
-    "decides which of two overlapping people is in front.",
+    summary="Reimplements the thesis literally, with independent filters, colour moments, and a boosted "
+    "classifier that decides which of two overlapping people is in front.",
 )
 def _thesis(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("thesis", rng)
@@ -168,7 +171,7 @@ def _thesis(rng: "np.random.Generator") -> Tracker:
 @TRACKERS.register(
     "thermal",
     scope="thesis, chapters 4 and 5",
-    summary="`thesis` with the thermal image only.",
+    summary="Like `thesis`, with the thermal image only.",
 )
 def _thermal(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("thermal", rng)
@@ -177,7 +180,7 @@ def _thermal(rng: "np.random.Generator") -> Tracker:
 @TRACKERS.register(
     "colour",
     scope="thesis, chapters 4 to 6",
-    summary="`thesis` with colour, without occlusion handling.",
+    summary="Like `thesis`, with colour, but without occlusion handling.",
 )
 def _colour(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("colour", rng)
@@ -186,7 +189,8 @@ def _colour(rng: "np.random.Generator") -> Tracker:
 @TRACKERS.register(
     "paper",
     scope="the 2005 paper",
-    summary="The paper's measurement model, its 30 % best samples, three frames to confirm a person.",
+    summary="Uses the measurement model of the paper and its best 30 % of the samples. Needs three "
+    "frames to confirm a person.",
 )
 def _paper(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("paper", rng)
@@ -195,8 +199,9 @@ def _paper(rng: "np.random.Generator") -> Tracker:
 @TRACKERS.register(
     "panoramic-paper",
     scope="the 2003 paper",
-    summary="One person around a standing robot, with the panoramic camera only: background subtraction, a "
-    "network for the distance (`peopleboy train distance` trains it), a Kalman filter on the floor.",
+    summary="Tracks one person around a stationary robot, with the panoramic camera only. Uses "
+    "background subtraction, a network that estimates the distance (trained by `peopleboy train "
+    "distance`), and a Kalman filter on the floor.",
 )
 def _panoramic_paper(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.panoramic.paper.distance_network import shipped_models
@@ -207,9 +212,10 @@ def _panoramic_paper(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
 
 @TRACKERS.register(
     "panoramic",
-    scope="the 2003 paper, and beyond",
-    summary="Several people around a standing or moving robot, with the panoramic camera only: learned "
-    "foreground segmentation, learned floor positions with covariance, colour descriptors by height.",
+    scope="the 2003 paper, with extensions",
+    summary="Tracks several people around a stationary or moving robot, with the panoramic camera only. "
+    "Uses learned foreground segmentation, learned floor positions with covariances, and colour "
+    "descriptors by height.",
 )
 def _panoramic(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     return _panoramic_tracker()
@@ -218,8 +224,8 @@ def _panoramic(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
 @TRACKERS.register(
     "handover",
     scope="thesis, section 8.2",
-    summary="`contour` in the thermal image and `panoramic` in 360 degrees, with handover between them: a "
-    "person keeps one id from the thermal image through the panorama and back.",
+    summary="Runs `contour` in the thermal image and `panoramic` in 360 degrees, with handover between "
+    "them. A person keeps the same id from the thermal image to the panorama and back.",
 )
 def _handover(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
@@ -229,9 +235,10 @@ def _handover(rng: "np.random.Generator") -> Tracker:
 
 @TRACKERS.register(
     "rgbd",
-    scope="the situation-awareness thesis, chapter 4, and beyond",
-    summary="People on the floor with an RGB-D camera, on a standing or moving robot: candidates of human "
-    "size, a learned classifier, and a particle filter for each person.",
+    scope="the situation-awareness thesis, chapter 4, with extensions",
+    summary="Tracks people on the floor with an RGB-D camera, on a stationary or moving robot. Verifies "
+    "candidates of human size with a learned classifier, and tracks each person with a particle "
+    "filter.",
 )
 def _rgbd(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
@@ -242,7 +249,7 @@ def _rgbd(rng: "np.random.Generator") -> Tracker:
 @TRACKERS.register(
     "rgbd-printed",
     scope="the situation-awareness thesis, chapter 4",
-    summary="`rgbd` with the settings given in the thesis, where it gives any.",
+    summary="Like `rgbd`, but uses the settings of the thesis wherever it states them.",
 )
 def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.rgbd.rgbd_config import PRINTED
@@ -252,9 +259,10 @@ def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
 
 @TRACKERS.register(
     "fused",
-    scope="both theses, and beyond",
-    summary="Fusion of `contour` and `rgbd`, and of `panoramic` if that camera is mounted. Thermal images "
-    "detect people, depth locates them, colour identifies them. Works in the dark and with fewer cameras.",
+    scope="both theses, with extensions",
+    summary="Fuses `contour` and `rgbd`, and `panoramic` if the robot has that camera. People are "
+    "detected in thermal images, located by depth, and identified by colour. Works in the dark "
+    "and with fewer cameras.",
 )
 def _fused(rng: "np.random.Generator") -> Tracker:
     return _fused_tracker(rng)
@@ -262,9 +270,10 @@ def _fused(rng: "np.random.Generator") -> Tracker:
 
 @TRACKERS.register(
     "thermal-depth",
-    scope="the default and both theses, and beyond",
-    summary="The default detector in the thermal image and detections in the depth image, in one Kalman "
-    "filter for each person. Depth shows what hides a person; colours, motion and stature re-identify.",
+    scope="the default and both theses, with extensions",
+    summary="Combines the default detector in the thermal image and detections in the depth image, in "
+    "one Kalman filter for each person. Uses depth to find occluders. Re-identifies people by "
+    "colours, motion and stature.",
 )
 def _thermal_depth(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.sensors.depth import DepthSensor
@@ -277,10 +286,10 @@ def _thermal_depth(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
 
 @TRACKERS.register(
     "attentive",
-    scope="the situation-awareness thesis, chapter 5, and beyond",
-    summary="`contour` with re-identification: it learns each person's appearance and restores the id of a "
-    "person who comes back within ten minutes; unknown people get new ids. A following robot keeps searching "
-    "until it sees its person again.",
+    scope="the situation-awareness thesis, chapter 5, with extensions",
+    summary="Adds re-identification to `contour`. Learns the appearance of each person, and restores the "
+    "id of a person who comes back after any time. Unknown people get new ids. A robot that "
+    "follows a person keeps searching until the person is visible again.",
 )
 def _attentive(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
@@ -292,7 +301,8 @@ def _attentive(rng: "np.random.Generator") -> Tracker:
 @TRACKERS.register(
     "attentive-printed",
     scope="the situation-awareness thesis, chapter 5",
-    summary="Like `attentive`, with re-identification by the attention model as printed in that chapter.",
+    summary="Like `attentive`, but re-identifies people with the attention model exactly as printed in "
+    "that chapter.",
 )
 def _attentive_printed(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.attention.attention_config import PRINTED
@@ -305,8 +315,8 @@ def _attentive_printed(rng: "np.random.Generator") -> Tracker:
 
 @TRACKERS.register(
     "attentive-fused",
-    scope="all of these",
-    summary="`fused` with the re-identification of `attentive`, from all colour cameras.",
+    scope="as `fused` and `attentive`",
+    summary="Adds the re-identification of `attentive` to `fused`, with all colour cameras.",
 )
 def _attentive_fused(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
