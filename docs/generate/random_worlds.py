@@ -36,12 +36,15 @@ def bearings() -> str:
     ]
     shares = [
         (name, ", ".join(f"{word.replace('_', ' ')} {share:.0%}" for word, share in of))
-        for name, of in (("a hand", HOLDS.items()), ("carried, of people without a `bag`", CARRIED.items()))
+        for name, of in (
+            ("position of a hand", HOLDS.items()),
+            ("item carried by people without a `bag`", CARRIED.items()),
+        )
     ]
     return "\n\n".join(
         (
             table(
-                ("normal distribution, truncated at two standard deviations", "mean", "standard deviation"),
+                ("normal distribution, clipped at two standard deviations", "mean", "standard deviation"),
                 spreads,
             ),
             table(("categorical distribution", "probabilities"), shares),

@@ -25,7 +25,9 @@ class Range:
 RANGES: Final[Mapping[str, Range]] = {
     "room_length": Range(low=4.0, high=20.0, unit="m", what="length of a room"),
     "room_width": Range(low=3.5, high=14.0, unit="m", what="width of a room"),
-    "corridor_length": Range(low=7.0, high=24.0, unit="m", what="length of a corridor, and of its legs"),
+    "corridor_length": Range(
+        low=7.0, high=24.0, unit="m", what="length of a corridor or of each of its legs"
+    ),
     "corridor_width": Range(low=1.8, high=4.0, unit="m", what="width of a corridor"),
     "street_length": Range(low=10.0, high=40.0, unit="m", what="length of a street"),
     "street_width": Range(low=6.0, high=16.0, unit="m", what="width of a street"),
@@ -51,17 +53,22 @@ RANGES: Final[Mapping[str, Range]] = {
         low=-0.5, high=4.0, unit="K", what="temperature of the ceiling, relative to the air"
     ),
     "wall_over_others": Range(
-        low=-5.0, high=5.0, unit="K", what="temperature of a deviating wall, relative to the others"
+        low=-5.0, high=5.0, unit="K", what="temperature of a deviating wall, relative to the other walls"
     ),
     "things": Range(low=0, high=24, unit="", what="number of objects, as far as they fit", is_whole=True),
     "thing_over_air": Range(
         low=-1.5, high=1.5, unit="K", what="temperature of an unheated object, relative to the air"
     ),
-    "thing_heat": Range(low=0.6, high=1.3, unit="", what="factor on the heat of a heated object"),
-    "thing_size": Range(low=0.75, high=1.35, unit="", what="factor on each side of a resized object"),
+    "thing_heat": Range(
+        low=0.6,
+        high=1.3,
+        unit="",
+        what="factor on the temperature difference between a heated object and the air",
+    ),
+    "thing_size": Range(low=0.75, high=1.35, unit="", what="factor on each side length of a resized object"),
     "emissivity": Range(low=0.75, high=0.97, unit="", what="emissivity of objects"),
     "people": Range(low=0, high=10, unit="", what="number of people, as far as they fit", is_whole=True),
-    "points": Range(low=1, high=5, unit="", what="waypoints of a path", is_whole=True),
+    "points": Range(low=1, high=5, unit="", what="number of waypoints of a path", is_whole=True),
     "speed": Range(low=0.4, high=1.8, unit="m/s", what="walking speed"),
     "pause": Range(low=0.3, high=4.0, unit="s", what="pause at a waypoint"),
     "camera_height": Range(low=0.4, high=1.8, unit="m", what="height of the cameras above the floor"),
@@ -77,7 +84,7 @@ RANGES: Final[Mapping[str, Range]] = {
     "vignetting": Range(low=0.0, high=0.6, unit="K", what="vignetting"),
     "drift": Range(low=0.0, high=0.6, unit="K/min", what="drift of the thermal image"),
     "gain_follows": Range(low=0.0, high=3.0, unit="s", what="time constant of the gain"),
-    "tail": Range(low=0.05, high=0.4, unit="%", what="pixels clipped by the gain at either end"),
+    "tail": Range(low=0.05, high=0.4, unit="%", what="share of pixels clipped by the gain at each end"),
     "least_span": Range(low=2.0, high=10.0, unit="K", what="minimum span of the gain"),
     "plateau": Range(low=0.1, high=3.0, unit="%", what="plateau of a plateau gain"),
     "linear_share": Range(low=0.1, high=0.8, unit="", what="linear share of a plateau gain"),
@@ -91,10 +98,10 @@ RANGES: Final[Mapping[str, Range]] = {
         low=-30.0,
         high=30.0,
         unit="deg",
-        what="heading of the robot, relative to a distant point of the floor",
+        what="heading of the robot, relative to the direction of a distant point on the floor",
     ),
-    "drive_speed": Range(low=-0.2, high=0.7, unit="m/s", what="speed of a command"),
-    "drive_turn": Range(low=-40.0, high=40.0, unit="deg/s", what="turn rate of a command"),
+    "drive_speed": Range(low=-0.2, high=0.7, unit="m/s", what="commanded speed"),
+    "drive_turn": Range(low=-40.0, high=40.0, unit="deg/s", what="commanded turn rate"),
     "drive_lasts": Range(low=0.8, high=4.0, unit="s", what="duration of a command"),
     "light": Range(low=0.25, high=1.2, unit="", what="light level"),
 }
@@ -117,9 +124,9 @@ SHARES: Final[Mapping[str, Mapping[str, float]]] = {
 """Values with a categorical distribution, with their probabilities."""
 
 ODDS: Final[Mapping[str, tuple[float, str]]] = {
-    "has_sun": (0.4, "the sun shines in, or on the street"),
-    "street_kind": (0.8, "an object in a street is one that belongs there"),
-    "wall_differs": (0.3, "a wall has a temperature of its own"),
+    "has_sun": (0.4, "the sun shines into the room or onto the street"),
+    "street_kind": (0.8, "an object in a street is a typical street object"),
+    "wall_differs": (0.3, "a wall has a different temperature from the others"),
     "coloured": (0.6, "a surface or object has a random colour"),
     "patterned": (0.3, "an object has a pattern"),
     "sized": (0.5, "an object is resized"),

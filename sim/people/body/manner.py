@@ -72,30 +72,34 @@ SPREADS: Final[Mapping[str, Spread]] = {
     "stride": Spread(
         mean=1.04, deviation=0.05, unit="", what="stride length, relative to the motion capture clip"
     ),
-    "arm_swing": Spread(mean=1.0, deviation=0.3, unit="", what="arm swing, relative to the clip", least=0.2),
+    "arm_swing": Spread(
+        mean=1.0, deviation=0.3, unit="", what="arm swing, relative to the motion capture clip", least=0.2
+    ),
     "arms_off": Spread(
-        mean=6.0, deviation=4.0, unit="deg", what="angle of the arms off the trunk", least=0.0
+        mean=6.0, deviation=4.0, unit="deg", what="angle between the arms and the trunk", least=0.0
     ),
     "elbow": Spread(mean=10.0, deviation=9.0, unit="deg", what="additional elbow flexion", least=0.0),
     "stoop": Spread(mean=3.0, deviation=3.5, unit="deg", what="stoop"),
     "bow": Spread(mean=5.0, deviation=8.0, unit="deg", what="head pitch"),
     "aside": Spread(mean=0.0, deviation=14.0, unit="deg", what="head yaw"),
-    "looks_about": Spread(mean=0.0, deviation=14.0, unit="deg", what="amplitude of head turning"),
+    "looks_about": Spread(mean=0.0, deviation=14.0, unit="deg", what="amplitude of the turning of the head"),
     "stance": Spread(
         mean=1.45,
         deviation=0.4,
         unit="",
-        what="foot distance while standing, relative to the hip joints",
+        what="distance between the feet while standing, relative to that between the hip joints",
         least=0.8,
     ),
     "step_width": Spread(
         mean=0.66,
         deviation=0.2,
         unit="",
-        what="foot distance while walking, relative to the hip joints",
+        what="distance between the feet while walking, relative to that between the hip joints",
         least=0.25,
     ),
-    "ahead": Spread(mean=0.0, deviation=0.025, unit="statures", what="left foot ahead while standing"),
+    "ahead": Spread(
+        mean=0.0, deviation=0.025, unit="statures", what="forward offset of the left foot while standing"
+    ),
     "toe_out": Spread(mean=8.0, deviation=5.0, unit="deg", what="toe-out angle", least=-2.0),
 }
 HOLDS: Final[Mapping[Hold, float]] = {
