@@ -21,38 +21,45 @@ REFERENCE_HEIGHT_PX = 240
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContourConfig:
-    """Where contours are sampled, and how grey differences are weighted.
+    """How contours are sampled, and how grey differences are weighted.
 
-    The thesis says that inner and outer pixels along the ellipses are compared, but not how far from the
-    contour, at how many points, and where the sides end: `reach_px`, `points` and `side_end_deg` are
-    readings.
+    The thesis compares inner and outer pixels along the ellipses, but does not state their distance from the
+    contour, their number, or where the sides end. `reach_px`, `points` and `side_end_deg` are therefore
+    interpretations.
     """
 
-    points: int = 8  # pairs of inner and outer points per section
-    side_end_deg: float = 180.0  # where the sides end: 180 is the bottom of the body
-    reach_px: float = 2.0  # distance of the points from the contour, independent of its size
-    body_reach: tuple[float, ...] = (0.0,)  # plus this share of the body's semi-width; the points alternate
-    head_reach: tuple[float, ...] = (0.0,)  # plus this share of the head's semi-width
-    inner_depth: float = 1.0  # distance of the inner points as a share of that of the outer ones
+    points: int = 8  # number of pairs of inner and outer points per section
+    side_end_deg: float = 180.0  # end of the sides; 180 is the bottom of the body
+    reach_px: float = 2.0  # constant distance of the points from the contour
+    # additional distance, as a share of the semi-width of the body; successive points alternate between the
+    # values
+    body_reach: tuple[float, ...] = (0.0,)
+    head_reach: tuple[float, ...] = (0.0,)  # additional distance, as a share of the semi-width of the head
+    inner_depth: float = 1.0  # distance of the inner points, as a share of that of the outer points
     far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 for none
-    saturation_grey: float = 0.0  # difference at which the response saturates, tanh; 0 keeps it linear
-    is_cut_off: bool = False  # whether it is clipped instead: linear up to there, and constant beyond
-    # Clutter (`likelihood.clutter_of`) at which the response saturates, if that is larger: differences as
-    # large as everywhere in the image are little evidence.
+    # grey difference at which the response saturates (tanh); 0 for a linear response
+    saturation_grey: float = 0.0
+    is_cut_off: bool = False  # whether the response is clipped at this difference, instead of tanh
+    # clutter (`likelihood.clutter_of`) at which the response saturates, if this is larger; differences that
+    # occur everywhere in the image are weak evidence
     clutter_share: float = 0.0
-    # Factor for a body colder than its surroundings: 1 against a person, 0 neutral, -1 for a person.
+    # factor for a body that is colder than its surroundings: 1 is evidence against a person, 0 is neutral,
+    # and -1 is evidence for a person
     cold_response: float = 1.0
-    # alpha of equation 4.3: the head's left, top and right, the shoulders, the sides; scaled to add up to 1.
+    # alpha of equation 4.3 for the left, top and right of the head, the shoulders and the sides; scaled to
+    # a sum of 1
     section_weights: tuple[float, ...] = (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16)
-    feet_weight: float = 0.0  # weight of an eighth section, the line under the feet; the others add up to 1
+    # weight of an eighth section, the line under the feet; the other weights add up to 1
+    feet_weight: float = 0.0
     unseen_response: float = 0.0  # response of a point outside the image
-    # Weight of such a point above the image; the remaining weight goes to the points inside. Not for points
-    # below, as people would then grow until only their shoulders are visible.
+    # weight of a point above the image; the remaining weight goes to the points inside. Points below the
+    # image are excluded, since people would otherwise grow until only their shoulders are visible
     unseen_share: float = 1.0
-    cut_share: float = 1.0  # the same for a camera that truncates heads, or an uncalibrated one
-    hottest_grey: int = 256  # grey from which a surface is too hot for a person and counts as cold
-    dark_share: float = 0.0  # share of black pixels if the scale ends there; 0: it always does
-    hot_margin_px: int = 0  # so do the pixels around it, whose grey is mixed
+    cut_share: float = 1.0  # the same for an uncalibrated camera, or for one that cuts off heads
+    hottest_grey: int = 256  # grey value from which a surface is too hot for a person, and counts as cold
+    dark_share: float = 0.0  # minimum share of black pixels for which `hottest_grey` applies; 0 for always
+    # margin around hot pixels that also counts as cold, since its grey values are mixed
+    hot_margin_px: int = 0
 
     def __post_init__(self) -> None:
         check_positive(self, "points")
@@ -73,16 +80,19 @@ class ContourConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LimitsConfig:
-    """Limits of a sample's proportions and position (thesis, table in section 4.4)."""
+    """Limits of the proportions and position of a sample (thesis, table in section 4.4)."""
 
-    ratio_wh: tuple[float, float] = (0.1, 0.9)
+    ratio_wh: tuple[float, float] = (0.1, 0.9)  # semi-width of the body, divided by its semi-height
+    # horizontal offset of the head, divided by the semi-width of the body
     ratio_dw: tuple[float, float] = (-1.5, 1.5)
-    y: tuple[float, float] = (0.2, 0.8)  # [image heights]
-    h: tuple[float, float] = (0.02, 0.5)  # [image heights]; the sources give no maximum
-    horizon: float = 0.5  # [image heights] row of the horizon: the middle, for a level camera
-    # [body semi-heights]: where people on the floor are.
+    y: tuple[float, float] = (0.2, 0.8)  # [image heights] row of the centre of the body
+    # [image heights] semi-height of the body; the sources give no maximum
+    h: tuple[float, float] = (0.02, 0.5)
+    horizon: float = 0.5  # [image heights] row of the horizon; for a level camera, the middle of the image
+    # [body semi-heights] row of the centre below the horizon, for people on the floor
     y_below_horizon: tuple[float, float] = (-math.inf, math.inf)
-    # [image heights squared] by which these limits are widened: c0 + c1 h + c2 h^2, with h in image heights.
+    # [image heights squared] variance by which these limits are widened: c0 + c1 h + c2 h^2, with h in
+    # image heights
     floor_variance: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
@@ -94,13 +104,15 @@ class LimitsConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LikelihoodConfig:
-    """How section differences become a weight and a probability."""
+    """How section differences are converted to a weight and a probability."""
 
-    model: str = "thesis"  # "thesis": equations 4.3 and 4.4; "paper": equations 3 and 4
-    slope: float = 0.125  # kappa
-    threshold: float = 22.0  # theta, in the unit of the section differences
-    section_threshold: float = 10.0  # t_h of the paper: a section below it has no weight
-    weakest_share: float = 0.0  # share of the weakest of the seven sections in the fitness
+    model: str = "thesis"  # "thesis" for equations 4.3 and 4.4, "paper" for equations 3 and 4
+    slope: float = 0.125  # kappa, the slope of the logistic function from fitness to probability
+    threshold: float = (
+        22.0  # theta, the fitness with a probability of 0.5, in the unit of the section differences
+    )
+    section_threshold: float = 10.0  # t_h of the paper; sections below it have no weight
+    weakest_share: float = 0.0  # weight of the weakest of the seven sections in the fitness
 
     def __post_init__(self) -> None:
         if self.model not in ("thesis", "paper"):
@@ -111,21 +123,21 @@ class LikelihoodConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionConfig:
-    """Amplitudes of the random walk (B of equation 4.7), and the camera's ego-motion."""
+    """Amplitudes of the random walk (B of equation 4.7), and ego-motion of the camera."""
 
-    noise_x: float = 30.0  # [px/s]
-    noise_y: float = 30.0
-    noise_w: float = 22.0
-    noise_h: float = 22.0
-    noise_d: float = 60.0
-    noise_by_height: float = (
-        0.0  # semi-height [px] to which these refer, others in proportion; 0: the same for all
-    )
-    # Spread of vx, vy, vw, vh [px/s] of new samples; None: the amplitudes above.
+    noise_x: float = 30.0  # [px/s] amplitude for x
+    noise_y: float = 30.0  # [px/s] amplitude for y
+    noise_w: float = 22.0  # [px/s] amplitude for w
+    noise_h: float = 22.0  # [px/s] amplitude for h
+    noise_d: float = 60.0  # [px/s] amplitude for d
+    # [px] semi-height to which these amplitudes refer; they are scaled in proportion to the semi-height. 0 for
+    # constant amplitudes
+    noise_by_height: float = 0.0
+    # [px/s] spread of vx, vy, vw and vh in new samples; None for the amplitudes above
     fresh_speed: tuple[float, float, float, float] | None = None
-    place_memory: float = 1.0  # share of (vx, vy) that persists to the next step
-    size_memory: float = 1.0  # the same for (vw, vh)
-    uses_odometry: bool = False
+    place_memory: float = 1.0  # share of the velocity (vx, vy) that persists to the next step
+    size_memory: float = 1.0  # share of the velocity (vw, vh) that persists to the next step
+    uses_odometry: bool = False  # whether odometry predicts the motion of the camera
 
     def __post_init__(self) -> None:
         check_not_negative(self, "noise_x", "noise_y", "noise_w", "noise_h", "noise_d", "noise_by_height")
@@ -134,18 +146,19 @@ class MotionConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FilterConfig:
-    """One particle filter: its size, the source of new samples, and the samples that form the estimate."""
+    """Size of a particle filter, the source of new samples, and the samples that form the estimate."""
 
-    count: int = 1000  # N
-    fresh_share: float = 0.2  # share drawn from the prior in every step
-    resized_share: float = 0.0  # share resized in every step
-    limits: LimitsConfig = field(default_factory=LimitsConfig)
-    log_uniform_h: bool = False  # prior of h: uniform, or uniform in log h
-    sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0: the probability, or the paper's fitness
-    estimate_share: float = 1.0  # share of the samples, the best ones, that form the estimate
-    estimate_reach: float = math.inf  # only those within this many semi-axes of the best
-    resamples_core: bool = False  # whether a person's next samples come from those alone
-    floor: float = -math.inf  # least fitness for the weight: that of an occluded person anywhere
+    count: int = 1000  # number of samples N
+    fresh_share: float = 0.2  # share of samples drawn from the prior in every step
+    resized_share: float = 0.0  # share of samples resized in every step
+    limits: LimitsConfig = field(default_factory=LimitsConfig)  # limits of the samples
+    log_uniform_h: bool = False  # whether the prior of h is uniform in log h, instead of in h
+    # weight = exp(sharpness * fitness); 0 for the probability, or the fitness of the paper
+    sharpness: float = 0.0
+    estimate_share: float = 1.0  # share of the samples that form the estimate; the best samples are used
+    estimate_reach: float = math.inf  # maximum distance of these samples from the best sample, in semi-axes
+    resamples_core: bool = False  # whether a person's next samples are drawn from these samples only
+    floor: float = -math.inf  # minimum fitness for the weight, which is that of an occluded person anywhere
 
     def __post_init__(self) -> None:
         check_positive(self, "count", "estimate_share", "estimate_reach")
@@ -157,12 +170,14 @@ class FilterConfig:
 class LifeConfig:
     """When a track is confirmed, and when it is deleted."""
 
-    birth_confidence: float = 0.5
-    birth_frames: int = 1  # consecutive frames needed above it
-    death_confidence: float = 0.5
-    doubt_frames: int = 1  # consecutive frames below it that make a person tentative again
-    death_frames: int = 1  # consecutive frames below it after which the track is deleted
-    uncertainty_px2: float = 400.0  # largest spread of a person's particles
+    birth_confidence: float = 0.5  # confidence above which a track is confirmed
+    birth_frames: int = 1  # number of consecutive frames above `birth_confidence` that confirm a track
+    death_confidence: float = 0.5  # confidence below which a track is lost
+    # number of consecutive frames below `death_confidence` after which a track is tentative again
+    doubt_frames: int = 1
+    # number of consecutive frames below `death_confidence` after which a track is deleted
+    death_frames: int = 1
+    uncertainty_px2: float = 400.0  # [px^2] maximum spread of a person's samples
 
     def __post_init__(self) -> None:
         check_share(self, "birth_confidence", "death_confidence")
@@ -171,18 +186,20 @@ class LifeConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchConfig:
-    """How new people are searched for, and which of them are confirmed sooner or later than by `LifeConfig`.
+    """How new people are searched for, and exceptions from the rules of `LifeConfig` for confirmation.
 
-    The sources search each image once, and treat all people alike.
+    The sources search each image once, and use the same rules for all people.
     """
 
-    scans: int = 1  # times that the detector moves and weighs its samples in each image
-    small_h: float = 0.0  # body semi-height [px] below which a person is small
+    scans: int = 1  # number of times that the detector moves and weights its samples in each image
+    small_h: float = 0.0  # [px] semi-height of the body below which a person is small
     small_confidence: float = 0.5  # `birth_confidence` of small people
-    # Large people without a neighbour are confirmed after `clear_frames` above this; 1: never sooner.
+    # confidence above which a large person without a neighbour is confirmed after `clear_frames`; 1
+    # disables this rule
     clear_confidence: float = 1.0
-    clear_frames: int = 1
-    clear_margin: float = 0.0  # widths of known people that count as next to them, on each side
+    clear_frames: int = 1  # number of consecutive frames for this rule
+    # distance to each side of a known person that counts as next to the person, in widths of the person
+    clear_margin: float = 0.0
 
     def __post_init__(self) -> None:
         check_positive(self, "scans", "clear_frames")
@@ -192,11 +209,11 @@ class SearchConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxConfig:
-    """How a contour becomes a box (thesis: 2 w by 3.5 h; paper: 2 w by 3 h)."""
+    """Conversion of a contour to a box (2 w by 3.5 h in the thesis, 2 w by 3 h in the paper)."""
 
-    width_per_w: float = 2.0
-    height_per_h: float = 3.5
-    hair_per_h: float = 0.0  # cold hair above the head's ellipse
+    width_per_w: float = 2.0  # width of the box, divided by w
+    height_per_h: float = 3.5  # height of the box, divided by h
+    hair_per_h: float = 0.0  # height of cold hair above the ellipse of the head, divided by h
 
     def __post_init__(self) -> None:
         check_positive(self, "width_per_w", "height_per_h")
@@ -207,8 +224,8 @@ class BoxConfig:
 class SmoothingConfig:
     """Time constants of the low-pass filter on estimates; 0 disables it."""
 
-    place_s: float = 0.0  # x, y
-    size_s: float = 0.0  # w, h, d
+    place_s: float = 0.0  # [s] time constant of x and y
+    size_s: float = 0.0  # [s] time constant of w, h and d
 
     def __post_init__(self) -> None:
         check_not_negative(self, "place_s", "size_s")
@@ -218,7 +235,8 @@ class SmoothingConfig:
 class AppearanceConfig:
     """Variation of a person's thermal pattern from frame to frame, and its weight."""
 
-    grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)  # of the mean of head, torso, legs, 0..1
+    # spread of the mean grey value of head, torso and legs (0..1)
+    grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)
 
     def __post_init__(self) -> None:
         refuse_unless(min(self.grey_spread) > 0, self, "grey_spread", "positive")
@@ -226,14 +244,15 @@ class AppearanceConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InteractionConfig:
-    """How filters avoid each other's people, and how they share samples."""
+    """How filters avoid people who are tracked by other filters, and how they share samples."""
 
-    detector_penalty: float = 0.01  # psi_D, factor on a detector's sample that overlaps a person
-    detector_overlap: float = 0.0  # share of the sample's region above which it counts as overlapping
-    penalty: float = 2.0  # rho, towards other people
-    occluded_penalty: float = 2.0  # rho_o, towards people in front
-    max_persons: int = 100  # with this many people, the detector is switched off
-    total_count: int = 0  # samples divided evenly among all people; 0 gives each filter its own N
+    # psi_D, the factor on the weight of a detector's sample that overlaps a person
+    detector_penalty: float = 0.01
+    detector_overlap: float = 0.0  # share of the sample's region above which it overlaps a person
+    penalty: float = 2.0  # rho, for overlaps with other people
+    occluded_penalty: float = 2.0  # rho_o, for overlaps with people in front
+    max_persons: int = 100  # number of people at which the detector is switched off
+    total_count: int = 0  # number of samples shared evenly by all people; 0 gives each filter its own N
 
     def __post_init__(self) -> None:
         check_share(self, "detector_penalty", "detector_overlap")
@@ -245,13 +264,14 @@ class InteractionConfig:
 class DepthOrderConfig:
     """Depth order of people, and its effect on the evidence."""
 
-    # By lower feet ("foot"), by appearance as well ("appearance"), by a boosted classifier ("learned");
-    # None: no depth order.
+    # depth order by lower feet ("foot"), by feet and appearance ("appearance"), or by a boosted classifier
+    # ("learned"); None for no depth order
     order: str | None = None
-    table: str = "contour"  # tracker for which the boosted classifier was trained: selects its table
-    remembers_feet: bool = False  # the classifier uses feet as last fully visible, not the contour's end
-    removes_front: bool = False  # ignore contour points on people in front
-    growth: float = 1.0  # factor by which the people in front are enlarged for that
+    table: str = "contour"  # tracker for which the boosted classifier was trained
+    # whether the classifier uses the feet as last fully visible, instead of the end of the contour
+    remembers_feet: bool = False
+    removes_front: bool = False  # whether contour points on people in front are ignored
+    growth: float = 1.0  # factor by which people in front are enlarged for `removes_front`
 
     def __post_init__(self) -> None:
         known = (None, "foot", "appearance", "learned")
@@ -261,13 +281,13 @@ class DepthOrderConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HeightConfig:
-    """How far a person's height may deviate from its value when the person was last fully visible.
+    """How much a person's height may deviate from the height when the person was last fully visible.
 
-    Spreads are those of the logarithm; 0: no limit.
+    Spreads are those of the logarithm of the height; 0 disables the limit.
     """
 
-    overlapped_spread: float = 0.0  # of an overlapped or occluded person
-    memory_s: float = 0.5  # time constant of that height
+    overlapped_spread: float = 0.0  # spread for an overlapped or occluded person
+    memory_s: float = 0.5  # [s] time constant of the remembered height
 
     def __post_init__(self) -> None:
         check_not_negative(self, "overlapped_spread")
@@ -276,12 +296,12 @@ class HeightConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StayBehindConfig:
-    """Occluded people are at the position of their occluder (thesis, section 7.3).
+    """Occluded people have the position of their occluder (thesis, section 7.3).
 
-    Without a depth order, no person is in front and none is occluded.
+    Without a depth order, no person is in front, and no person is occluded.
     """
 
-    head_covered: float = 0.8  # covered share of the head's contour from which a person is occluded
+    head_covered: float = 0.8  # covered share of the contour of the head at which a person is occluded
 
     def __post_init__(self) -> None:
         check_share(self, "head_covered")
@@ -291,8 +311,9 @@ class StayBehindConfig:
 class WalkOnConfig:
     """Occluded people continue with their last velocity."""
 
-    remembers_lost: bool = False  # whether other lost people also keep walking, and are remembered
-    shows_only_sure: bool = False  # occluded people are only output while their position is fairly certain
+    remembers_lost: bool = False  # whether other lost people also continue to walk, and are remembered
+    # whether occluded people are output only while their position is fairly certain
+    shows_only_sure: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

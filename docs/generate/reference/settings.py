@@ -90,7 +90,7 @@ def _value(config: Any, name: str, kind: type[Any]) -> str:
         return "off"
     value = getattr(config, name)
     if is_dataclass(value):
-        return "below"
+        return "see below"
     text = ", ".join(f"{part:g}" for part in value) if isinstance(value, tuple) else _plain(value)
     return text if value == getattr(kind(), name) else f"**{text}**"
 
