@@ -62,21 +62,22 @@ SPACES = {"rgb": 3, "grey": 1, "hsv": 3}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColourDescriptorConfig:
-    """How a person's colours are described, stored and compared.
+    """How the colours of a person are described, stored and compared.
 
     Attributes:
-        affine: p1..p6 that map a position (u, v) in the thermal image to (x, y) = (p1 + p2 u + p3 v,
-            p4 + p5 u + p6 v) in the colour image, all as shares of the image's width and height; the thesis
-            does not name the unit, but its numbers only make sense as shares.
-        parallax: further shift of x by this times a person's semi-height h, as a share of the thermal image's
-            width: near, and therefore tall, people are shifted more. 0 in the thesis.
-        representation: "moments1" to "moments3" or "histogram", of every part and channel.
+        affine: p1 to p6, which map a position (u, v) in the thermal image to (x, y) = (p1 + p2 u + p3 v,
+            p4 + p5 u + p6 v) in the colour image, all as shares of the image width and height. The thesis
+            does not state the unit, but its numbers are plausible as shares only.
+        parallax: additional shift of x, divided by a person's semi-height h, as a share of the thermal
+            image's width. People who are near, and therefore tall in the image, are shifted more. In the
+            thesis, it is 0.
+        representation: "moments1" to "moments3" or "histogram", for every part and channel.
         space: "rgb", "grey" or "hsv".
-        frames: n_k, number of descriptions in the model.
+        frames: n_k, the number of descriptions in the model.
         sharpness: lambda of the likelihood.
 
     Raises:
-        BadInput: an unknown name, or a value out of range.
+        BadInput: a name is unknown, or a value is out of range.
 
     Source: thesis, sections 6.1 and 6.3.
     """

@@ -108,9 +108,7 @@ class LikelihoodConfig:
 
     model: str = "thesis"  # "thesis" for equations 4.3 and 4.4, "paper" for equations 3 and 4
     slope: float = 0.125  # kappa, the slope of the logistic function from fitness to probability
-    threshold: float = (
-        22.0  # theta, the fitness with a probability of 0.5, in the unit of the section differences
-    )
+    threshold: float = 22.0  # theta, the fitness with probability 0.5, in the unit of section differences
     section_threshold: float = 10.0  # t_h of the paper; sections below it have no weight
     weakest_share: float = 0.0  # weight of the weakest of the seven sections in the fitness
 
@@ -130,8 +128,8 @@ class MotionConfig:
     noise_w: float = 22.0  # [px/s] amplitude for w
     noise_h: float = 22.0  # [px/s] amplitude for h
     noise_d: float = 60.0  # [px/s] amplitude for d
-    # [px] semi-height to which these amplitudes refer; they are scaled in proportion to the semi-height. 0 for
-    # constant amplitudes
+    # [px] semi-height to which these amplitudes refer; they are scaled in proportion to it. 0 for constant
+    # amplitudes
     noise_by_height: float = 0.0
     # [px/s] spread of vx, vy, vw and vh in new samples; None for the amplitudes above
     fresh_speed: tuple[float, float, float, float] | None = None
