@@ -47,7 +47,7 @@ class Behaviour(Protocol):
     """A controller of the robot.
 
     Attributes:
-        mode: current activity, one word for event log and curves: "search", "follow", "wait", "stand", ...
+        mode: current activity, as one word for the event log and plots, such as "search" or "follow".
         reason: reason for the mode, for the event log; may be empty.
         following: id of the followed track; None if there is none.
     """

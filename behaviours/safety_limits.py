@@ -32,9 +32,9 @@ class SafetyConfig:
             accelerates.
         margin_m: [m] clearance between the hull and obstacles while driving; a turn on the spot may swing the
             tail nearer, as a robot next to a wall must be able to turn away from it.
-        noise_m, shallow, closest_m: [m], [m/m], [m] within the margin the clearance may shrink by the first,
-            and by the second per distance driven, down to the third: sonars cannot distinguish a parallel
-            wall from one that slowly approaches.
+        noise_m, shallow, closest_m: [m], [m/m], [m] within the margin, the clearance may shrink by noise_m,
+            and by shallow per distance driven, but not below closest_m, because sonars cannot distinguish a
+            parallel wall from one that slowly approaches.
         off_middle_m: [m] greatest distance from the middle of a passage too narrow for the margin.
         hull_m: [m] half the hull's width.
         front_m, rear_m: [m] from the origin to the hull's front and rear edge.

@@ -30,7 +30,7 @@ class Calibration(Protocol):
         ...
 
     def rays(self, pixels: Floats) -> Floats:
-        """Return the directions (N, 3) in the robot's frame in which pixels (N, 2) look, of any length."""
+        """Return the viewing directions (N, 3) of pixels (N, 2) in the robot frame, of any length."""
         ...
 
 
@@ -43,7 +43,7 @@ class PinholeCalibration:
         robot_from_camera: (4, 4) pose of the optical frame, x right, y down, z forward, in the robot's.
 
     Raises:
-        BadInput: a matrix of another shape, or with a number that is not finite.
+        BadInput: a matrix has another shape, or contains a number that is not finite.
     """
 
     intrinsics: Floats
@@ -73,28 +73,29 @@ class PinholeCalibration:
         return np.asarray(seen[:, :2] / depth, np.float64)
 
     def rays(self, pixels: Floats) -> Floats:
-        """Return the directions (N, 3) in the robot's frame in which pixels (N, 2) look; their depth is 1."""
+        """Return the viewing directions (N, 3) of pixels (N, 2) in the robot frame, with a depth of 1."""
         columns = self._robot_from_pixel.T
         return np.asarray(pixels @ columns[:2] + columns[2], np.float64)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PanoramaCalibration:
-    """Calibration of a panoramic camera with a cone-shaped mirror over the robot's axis.
+    """Calibration of a panoramic camera with a conical mirror above the robot's axis.
 
-    Columns look in one direction each, the first to the robot's back, then by its left, front and right to
-    its back again; a column beyond the last one is the first again. In each the mirror makes a pinhole
-    camera, whose centre lies on a ring round the axis, and whose own axis looks at the image's lower border.
+    Each column has one viewing direction. The first column points to the back of the robot; the next ones
+    continue over the left, the front and the right to the back. Column numbers wrap around. For each column,
+    the mirror acts as a pinhole camera with its centre on a ring around the axis, and with an optical axis
+    that points at the lower image border.
 
     Attributes:
-        width, height: of the image [px].
-        focal_px: of the lens [px].
-        axis_rad: how far below the horizon the image's lower border looks [rad].
-        ring_radius_m: how far off the axis the centres are, in their direction of view [m]; negative: behind.
-        ring_height_m: how far above the floor they are [m].
+        width, height: size of the image [px].
+        focal_px: focal length of the lens [px].
+        axis_rad: viewing angle of the lower image border below the horizon [rad].
+        ring_radius_m: distance of the centres from the axis, in their viewing direction [m]; may be negative.
+        ring_height_m: height of the centres above the floor [m].
 
     Raises:
-        BadInput: a number that is not finite, or an image or focal length that is none.
+        BadInput: a number is not finite, or the image size or the focal length is invalid.
     """
 
     width: int
@@ -119,18 +120,18 @@ class PanoramaCalibration:
         return 0.0, 0.0, self.ring_height_m
 
     def bearing(self, columns: Floats) -> Floats:
-        """Return where columns (N,) look: -pi..pi from the nose, positive to the left [rad]."""
+        """Return the bearings (N,) of columns, -pi..pi from straight ahead, positive to the left [rad]."""
         turns = 0.5 - (columns + 0.5) / self.width
         return np.asarray(math.tau * (turns - np.rint(turns)), np.float64)
 
     def depression(self, rows: Floats) -> Floats:
-        """Return how far below the horizon rows (N,) look [rad]."""
+        """Return the viewing angles (N,) of rows below the horizon [rad]."""
         return np.asarray(self.axis_rad - np.arctan((self.height - 0.5 - rows) / self.focal_px), np.float64)
 
     def project(self, points_m: Floats) -> Floats:
         """Map points (N, 3) of the robot's frame to pixels (N, 2), the column within the image.
 
-        NaN for those that the ring's cameras do not have before them.
+        NaN for points that are not in front of the cameras on the ring.
         """
         x, y, z = points_m.T
         above = self.axis_rad - np.arctan2(self.ring_height_m - z, np.hypot(x, y) - self.ring_radius_m)
@@ -145,9 +146,9 @@ class PanoramaCalibration:
         return self.height - 0.5 - self.focal_px * math.tan(above) if is_before else math.nan
 
     def rays(self, pixels: Floats) -> Floats:
-        """Return the unit directions (N, 3) in the robot's frame in which pixels (N, 2) look.
+        """Return the unit viewing directions (N, 3) of pixels (N, 2) in the robot frame.
 
-        They start on the ring, which `ring_radius_m` says how to find from `position_m`.
+        The rays start on the ring, whose centre is `position_m` and whose radius is `ring_radius_m`.
         """
         bearing, down = self.bearing(pixels[:, 0]), self.depression(pixels[:, 1])
         level = np.cos(down)

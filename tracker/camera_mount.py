@@ -1,4 +1,4 @@
-"""Pose of the thermal camera on the robot, as far as rows and sizes of people in its image depend on it."""
+"""Mount of the thermal camera: the properties that determine rows and sizes of people in its image."""
 
 import math
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Mount:
     Attributes:
         horizon_px: row of the horizon [px]; it may lie outside the image.
         focal_px: focal length [px].
-        height_m: of the camera above the floor [m].
+        height_m: height of the camera above the floor [m].
     """
 
     horizon_px: float

@@ -70,7 +70,7 @@ class Odometry:
 
 
 class ReadOnlyImages(Mapping[str, NDArray[Any]]):
-    """Images by camera as read-only views; none is copied or made here."""
+    """Images by camera as read-only views, which are neither copied nor rendered here."""
 
     __slots__ = ("_images",)
 
@@ -102,17 +102,17 @@ class SensorReadings(Protocol):
 
     @property
     def time_s(self) -> float:
-        """When [s]."""
+        """Time of the readings [s]."""
         ...
 
     @property
     def images(self) -> Mapping[str, NDArray[Any]]:
-        """By camera."""
+        """Images by camera name."""
         ...
 
     @property
     def calibrations(self) -> Mapping[str, Calibration]:
-        """By camera."""
+        """Calibrations by camera name."""
         ...
 
     @property
@@ -128,10 +128,10 @@ class Frame:
     Attributes:
         images: by camera name: `thermal`, (H, W) uint8 grey, linear over 24..36 degC by default; `colour`,
             (H, W, 3) uint8 RGB; `depth`, (H, W) uint16 along the optical axis [mm], 0 for no reading. Sizes
-            may differ. A camera without an image at this instant is left out. Images may be rendered on
-            demand, and are read-only because others share them.
+            may differ. A camera without an image at this instant is omitted. Images may be rendered on
+            demand, and are read-only because they are shared.
         calibrations: of the cameras whose mount is known, by name; empty for footage.
-        time_s: when the images were taken [s].
+        time_s: time at which the images were taken [s].
         odometry: motion of the robot since the last frame; None if unknown.
 
     Raises:
@@ -158,7 +158,7 @@ class Frame:
 
     @classmethod
     def from_image(cls, image: NDArray[Any], time_s: float, camera: str = THERMAL) -> Self:
-        """Make a frame from one camera's image, without calibration, such as one of your own footage."""
+        """Make a frame from one camera's image, without calibration, for example from your own footage."""
         return cls(images={camera: image}, time_s=time_s)
 
     @classmethod
@@ -222,7 +222,7 @@ def check_frame(frame: object) -> None:
     """Refuse anything that is not a frame, such as a bare image.
 
     Raises:
-        BadInput: with how to make one.
+        BadInput: the object is not a frame; the message explains how to make one.
     """
     if not isinstance(frame, Frame):
         shape = f" {frame.shape} {frame.dtype}" if isinstance(frame, np.ndarray) else ""
@@ -248,7 +248,7 @@ def _check_image(
 
 
 def lacking(camera: str, images: Mapping[str, Any]) -> str:
-    """Word that a frame has no image of a camera."""
+    """Return the message that a frame has no image of a camera."""
     return f"frame has no image of camera {camera!r}; it has {', '.join(images) or 'none'}"
 
 

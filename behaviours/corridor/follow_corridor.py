@@ -116,9 +116,9 @@ class CorridorState:
         image_s: [s] ... and by the image.
         image_fault: why the image was unusable; empty if it was usable.
         people_s: [s] time when a person was last in the image.
-        blocked_s: [s] time since when people are in the middle lane; None without people.
+        blocked_s: [s] time from which people have been in the middle lane; None without people.
         side: +1 while the robot passes people on their left, -1 on their right, 0 otherwise.
-        ended_s: [s] time since when the robot is at a wall; None otherwise.
+        ended_s: [s] time from which the robot has been at a wall; None otherwise.
         open_frames: numbers of images with an open left and right side, since a wall was measured ahead.
         people: echoes that do not belong to walls.
     """

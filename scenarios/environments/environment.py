@@ -98,7 +98,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             tracker, for which nothing is rendered.
         image_size: width and height [px] of all images.
         cameras: names of the cameras whose images `pixels` contains, others are not rendered; None for all.
-        tracker: name of the tracker behind "tracks", "truth" for exact boxes, or None for the scenario's.
+        tracker: name of the tracker that computes "tracks"; "truth" for exact boxes; None for the scenario's.
         randomise: options of every episode for which `reset` gets none.
         render_mode: "rgb_array" for `render`; "human" to show every step in rerun's viewer, a window, or a
             page whose address is printed if there is no screen; or None.

@@ -7,17 +7,17 @@ to the person to follow, b [rad] the bearing of that person, v [m/s] the speed a
 distance from the corridor's centre line, W [m] its width, g [m] the gap to the nearest person, a [-1..1] the
 action:
 
-    keep      = dt / 2 * max(0, 1 - |d - d_keep| / 3 m)      while the person is seen
-    face      = dt / 2 * max(0, 1 - |b| / (pi / 3))          while the person is seen
+    keep      = dt / 2 * max(0, 1 - |d - d_keep| / 3 m)      while the person is visible
+    face      = dt / 2 * max(0, 1 - |b| / (pi / 3))          while the person is visible
     progress  = dt * |v| / v_max                             in a corridor
-    centre    = -dt / 2 * |y| / (W / 2)                      in a corridor
+    centre    = -dt / 2 * min(1, |y| / (W / 2))              in a corridor
     space     = -dt / 2 * max(0, 1 - g / 1.2 m)
     change    = -dt / 20 * |a - a_before|^2
     collision = -10                                          once; the episode ends
     lost      = -10                                          once; the episode ends
 
 "follow" includes keep and face, "corridor" includes progress and centre, "patrol" includes keep and face
-while the person is seen, and progress and centre otherwise; all three include the other terms.
+while the person is visible, and progress and centre otherwise; all three include the other terms.
 """
 
 import math

@@ -35,13 +35,13 @@ class RunScores:
 
     Attributes:
         people: detection, localisation and identity; from the files of the run.
-        following: of the first person in the scenario; None if the robot was not to follow anybody.
-        corridor: of the way along corridors; None if the robot was not to follow any.
-        comfort: of people among whom the robot drove; None if it was not to drive, or nobody was there.
-        further: of people by the boxes that the tracker gave in further cameras' images, by camera.
-        by: what the boxes of `people` were held against; None for squares on the floor.
-        notes: what whoever reads the figures must know, a line each.
-        contacts: what the robot touched, how fast, and who caused it.
+        following: scores of following the first person in the scenario; None if the robot has no such task.
+        corridor: scores of corridor following; None if the robot has no such task.
+        comfort: comfort of the people around the robot; None if the robot did not drive among people.
+        further: scores of people in the images of further cameras for which the tracker returns boxes.
+        by: ground-truth boxes that the scores of `people` refer to; None for squares on the floor.
+        notes: caveats of the scores, one line each.
+        contacts: bodies that the robot touched, with speeds and causes.
     """
 
     people: Scores

@@ -1,4 +1,4 @@
-"""Ground truth of one instant: poses of people, their visibility in the image, and occlusion."""
+"""Ground truth of one instant: poses of people, their visibility in the image, and occlusions."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence

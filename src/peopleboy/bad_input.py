@@ -10,15 +10,15 @@ Key = tuple[str | int, ...]
 
 
 class BadInput(ValueError):  # noqa: N818
-    """A user's mistake: a file, flag, image or action that cannot be used.
+    """Invalid input by the user: a file, flag, image or action that cannot be used.
 
-    The message is one line that says where, what, the offending value, and what would have been right.
-    The command line prints it as it is and exits with code 2.
+    The message is one line that states the location, the error, the invalid value, and what would be valid.
+    The command line prints this line and exits with code 2.
 
     Attributes:
-        reason: what is wrong, and what would have been right.
-        file: where it is, as the user knows the file; empty if it is in none.
-        key: which value of the file it is about; empty if about the whole file.
+        reason: the error, and what would be valid.
+        file: the file that contains the error, as the user refers to it; empty for none.
+        key: the key of the invalid value; empty for the whole file.
     """
 
     def __init__(self, reason: str, *, file: str = "", key: Key = ()) -> None:
@@ -26,13 +26,13 @@ class BadInput(ValueError):  # noqa: N818
         self.reason, self.file, self.key = reason, file, key
 
     def __str__(self) -> str:
-        """Write it on one line: file, key, reason."""
+        """Return one line with file, key and reason."""
         return ": ".join(part for part in (self.file, dotted(self.key), self.reason) if part)
 
     def within(self, *steps: str | int, file: str = "") -> "BadInput":
-        """Return the same mistake, found below these steps of a file.
+        """Return the same error with a longer key, whose first steps are these.
 
-        One that is in a file of its own already is the reason for which this file cannot be used.
+        If the error already names a file, the whole error becomes the reason, and `file` is the new file.
         """
         if self.file:
             return BadInput(str(self), file=file, key=steps)

@@ -63,7 +63,7 @@ ERRORS: Final = {
 def box_of(state: NDArray[np.floating], config: BoxConfig) -> Box:
     """Return the box left, top, width, height [px] of a contour (9,).
 
-    Its top is the top of the head, its centre column the body's.
+    The top is that of the head, and the centre column is that of the body.
 
     Source: thesis, section 3.4 (2 w by 3.5 h); paper, section 4.1 (2 w by 3 h).
     """
@@ -89,7 +89,7 @@ def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Fl
 
 
 def detector_factor(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
-    """Return the factor (N,) on a detector's samples: psi_D, once, for samples that overlap anybody.
+    """Return the factor (N,) on a detector's samples: psi_D, once, for samples that overlap a person.
 
     The overlap is the intersection of sample and region as a share of the smaller of the two.
 

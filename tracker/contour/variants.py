@@ -1,4 +1,4 @@
-"""The named settings of the tracker: the sources' own, and ours."""
+"""Named settings of the contour trackers: those of the sources, and those of PeopleBoy."""
 
 import math
 from collections.abc import Mapping
@@ -55,21 +55,26 @@ THESIS = TrackerConfig(
     detector=_THESIS_SAMPLES,
     person=_THESIS_SAMPLES,
 )
-"""Chapters 4 and 5, thermal alone, with the thesis's constants, and readings of what it leaves open.
+"""Chapters 4 and 5 of the thesis: the thermal image only, with the constants of the thesis.
 
-The effect of each was measured on training seeds; the page of `peopleboy reproduce` lists it.
+Where the thesis leaves a detail open, it is interpreted. The effect of each interpretation was measured on
+training seeds, and is listed on the page of `peopleboy reproduce`.
 
-Contrast: theta = 22 and kappa = 0.125 were fitted to the thesis's camera. Our people are 60 to 200 grey above
-their background, and one side of a head would already exceed theta. Differences are therefore clipped at 40
-grey, the largest contrast at which a head alone, 0.54 of the weights, does not reach theta. Pixels at the end
-of the scale are hotter than any person and count as cold; the thesis has no such step, but its rooms had
-fewer lamps and radiators of the size of a person.
+Contrast: theta = 22 and kappa = 0.125 were fitted to the camera of the thesis. In PeopleBoy's images, people
+are 60 to 200 grey levels brighter than the background, so one side of a head would already exceed theta.
+Differences are therefore clipped at 40 grey levels. This is the largest contrast at which a head alone, with
+a weight of 0.54, does not reach theta. Pixels at the end of the scale are hotter than any person, and count
+as cold. The thesis has no such step, but its rooms had fewer lamps and radiators of the size of a person.
 
-Contour: points lie at shares of the ellipses, further outside than inside, so that the estimated width is not
-biased, and the sides end above the legs. Motion: B names no unit of time. The velocities' entries for w and h
-are amplitudes of Brownian motion after one second, and grow with the root of the time step; those for x and y
-are half of the printed values, in every step: with the root people are found later, with the full values they
-are lost. Prior: uniform in the logarithm of h, up to the largest body that fits into the image, and with the
+Contour: the distance of points from the contour is a share of the ellipse. It is larger outside than inside,
+so that the estimated width is not biased. The sides end above the legs.
+
+Motion: B has no unit of time. Its entries for the velocities of w and h are interpreted as amplitudes of
+Brownian motion after one second, which grow with the square root of the time step. The entries for x and y
+are half of the printed values in every step; with the square root, people are found later, and with the full
+values, they are lost.
+
+Prior: uniform in the logarithm of h, up to the largest body that fits into the image, and with the
 speeds of people who walk past.
 """
 
@@ -77,10 +82,12 @@ THESIS_COLOUR = replace(
     THESIS,
     colour=ColourDescriptorConfig(representation="moments1", affine=FAR_AFFINE, parallax=ROBOT_PARALLAX),
 )
-"""With the colours of chapter 6; of the representations evaluated there, the first moments.
+"""As `THESIS`, with the colours of chapter 6.
 
-The skewness of a uniformly coloured region is unbounded, and drawn people are uniformly coloured. Our cameras
-are 6 cm apart, which no affine map compensates at every distance, so the parallax is added to it.
+Of the representations evaluated there, it uses the first moments. Higher moments are unsuitable, because the
+skewness of a uniformly coloured region is unbounded, and rendered people are uniformly coloured. The cameras
+of the simulated robot are 6 cm apart. No affine map compensates for this at all distances, so a parallax is
+added to the map.
 """
 
 THESIS_OCCLUSION = replace(
@@ -89,10 +96,11 @@ THESIS_OCCLUSION = replace(
     depth=DepthOrderConfig(order="learned", table="thesis"),
     occlusion=StayBehindConfig(head_covered=1.0),
 )
-"""With the occlusion handling of chapter 7; a head is occluded once no point of it is visible.
+"""As `THESIS_COLOUR`, with the occlusion handling of chapter 7.
 
-Depth order comes from a classifier that was trained on this tracker's own pairs (sections 7.1 and 7.2), by
-`peopleboy train occlusion --tracker thesis`; during its training, the order was that of the feet.
+A head is occluded if no point of it is visible. The depth order comes from a classifier (sections 7.1 and
+7.2) that `peopleboy train occlusion --tracker thesis` trained on pairs of people from this tracker. During
+the training, the order was that of the feet.
 """
 
 _PAPER_SAMPLES = replace(_THESIS_SAMPLES, fresh_share=0.1, estimate_share=0.3)
@@ -107,10 +115,10 @@ PAPER = replace(
     life=LifeConfig(birth_frames=3),
     box=BoxConfig(height_per_h=3.0),
 )
-"""The evaluation paper: equations 3 and 4, the best 30 %, 10 % anew, three frames to detect.
+"""The 2005 paper: equations 3 and 4, the best 30 % of the samples, 10 % new samples, three frames to detect.
 
-It names no threshold of the fitness; 18 grey is below the thesis's 22, since sections below 10 grey have no
-weight.
+The paper does not state a threshold of the fitness. The value is 18 grey levels, below the 22 of the thesis,
+because sections below 10 grey levels have no weight.
 """
 
 _CONTOUR_COLOUR = ColourDescriptorConfig(
@@ -200,7 +208,7 @@ CONTOUR = TrackerConfig(
 """The best contour tracker."""
 
 CONTOUR_LEARNED = replace(CONTOUR, depth=replace(CONTOUR.depth, order="learned"))
-"""The same with a learned depth order."""
+"""As `CONTOUR`, with a learned depth order."""
 
 VARIANTS: Final[Mapping[str, TrackerConfig]] = {
     "contour": CONTOUR,
@@ -210,4 +218,4 @@ VARIANTS: Final[Mapping[str, TrackerConfig]] = {
     "colour": THESIS_COLOUR,
     "paper": PAPER,
 }
-"""The settings of each contour tracker by name, the best first."""
+"""Settings of the contour trackers by name, in order of performance."""

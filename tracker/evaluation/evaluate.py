@@ -29,7 +29,7 @@ class Counts(Sums):
         ignored: further boxes of the tracker, removed because they lie on ignored people.
         matches: candidates that match a target (thesis, section 3.4).
         tracks: track ids, ignored or not.
-        false_tracks: track ids whose boxes never match anyone, counted or ignored.
+        false_tracks: track ids whose boxes never match a person, counted or ignored.
         partly_annotated: frames of sequences in which only one person is annotated.
     """
 

@@ -1,7 +1,7 @@
 """Box conventions: around the torso, or around the whole person, as in most annotations and detectors.
 
-Annotators also count pixels from the image's corner, while ours are relative to the middle of the first
-pixel; their boxes end at the image's borders, and ours may extend beyond.
+Annotators also measure pixels from the corner of the image, whereas PeopleBoy measures from the centre of the
+first pixel. Annotated boxes end at the image border, whereas those of PeopleBoy may extend beyond it.
 """
 
 import math

@@ -56,7 +56,7 @@ USUAL: Final = Manner()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread:
-    """A normal distribution truncated at two standard deviations, and below `least`."""
+    """A normal distribution, clipped at two standard deviations, and at `least`."""
 
     mean: float
     deviation: float
