@@ -108,17 +108,17 @@ class FormatName(click.Choice[str]):
 def export(runs: Sequence[Path], form: str, given: "GivenOptions[ExportOptions]", output: Output) -> None:
     """Export runs to the formats of other tools.
 
-    RUNS are run folders, or folders that contain run folders. For a rendered data set, coco, yolo and mot are
-    exported by split, as listed in the folder `splits` of the data set. export.json lists the runs of each
+    RUNS are run folders, or folders that contain run folders. A rendered data set is exported to `coco`,
+    `yolo` and `mot` by split, as listed in its folder `splits`, and `export.json` lists the runs of each
     split.
 
-    mot is the MOTChallenge format, which TrackEval reads. coco contains masks, boxes and keypoints. images
-    contains the person and body part of each pixel, and true depth, for each image. yolo contains boxes for
-    Ultralytics, and yolo-pose adds keypoints. viper is ViPER XML. mcap is a ROS 2 bag and needs the package
-    rosbags. mp4 contains videos and needs the package av.
+    `mot` is the MOTChallenge format, which TrackEval reads. `coco` contains masks, boxes and keypoints.
+    `images` contains, for each image, the person and body part at every pixel, and true depth. `yolo`
+    contains boxes for Ultralytics, and `yolo-pose` adds keypoints. `viper` is ViPER XML. `mcap` is a ROS 2
+    bag and needs the package rosbags. `mp4` contains videos and needs the package av.
 
-    coco, images and mcap contain all cameras. Images and masks are rendered again, and are bit-identical to
-    those of the run.
+    `coco`, `images` and `mcap` contain all cameras. Images and masks are rendered again, and are
+    bit-identical to those of the run.
     """
     from peopleboy.scenarios.export.export_runs import export as write
     from peopleboy.scenarios.export.export_runs import notes_on

@@ -78,9 +78,10 @@ def view(folder: Path, web: bool, port: int | None) -> None:
 def scene_model(folder: Path, no_thermal: bool, given: "GivenOptions[RunOptions]", output: Output) -> None:
     """Find objects that people moved, using depth images.
 
-    The run must contain images of a camera named `depth`: run the scenario with --frames. scene.jsonl has one
-    line per frame. static_map.ply is the static scene as a point cloud, and background.png is its depth from
-    the last viewpoint. `view` shows scene.rrd together with the run's recording.
+    The run must contain images of a camera named `depth`: run the scenario with --frames. The command writes
+    `scene.jsonl` with one line per frame, the point cloud `static_map.ply` of the static scene, and
+    `background.png` with the depth of the static scene from the last viewpoint. It also writes `scene.rrd`,
+    which `view` shows together with the run's recording.
     """
     from peopleboy.scenarios.finished_runs.run_scene_model import FOLDER, SceneModelOptions, run_scene_model
     from peopleboy.scenarios.progress_bar import progress_bar

@@ -270,8 +270,8 @@ class ScoreOptions:
     boxes: Annotated[
         BoxKind | None,
         Field(
-            description="Ground-truth boxes to score against: torso or whole person.  [default: as in "
-            "each run's own scores]"
+            description="Ground-truth boxes to score against: torso or whole person.  [default: the kind "
+            "that each run was scored against]"
         ),
     ] = None
 

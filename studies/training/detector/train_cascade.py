@@ -77,8 +77,8 @@ _LINEAR_FROM: Final = 0.9  # quantile of errors from which on the loss of the bo
 class CascadeTraining(Specification[Tasks]):
     """The cascade is trained on random worlds.
 
-    Some worlds are crowded, without details, or as warm as people. A tenth of the worlds is held out for the
-    calibration of scores.
+    Some of the worlds are crowded, have no details, or are as warm as people. A tenth of the worlds is held
+    out for the calibration of scores.
     """
 
     sequences: Annotated[
