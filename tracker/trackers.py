@@ -288,7 +288,7 @@ def _thermal_depth(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     "attentive",
     scope="the situation-awareness thesis, chapter 5, with extensions",
     summary="Adds re-identification to `contour`. Learns the appearance of each person, and restores the "
-    "id of a person who comes back after any time. Unknown people get new ids. A robot that "
+    "id of a person who comes back within ten minutes. Unknown people get new ids. A robot that "
     "follows a person keeps searching until the person is visible again.",
 )
 def _attentive(rng: "np.random.Generator") -> Tracker:
