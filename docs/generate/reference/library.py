@@ -47,7 +47,7 @@ def gallery() -> str:
 def _section(group: LibraryGroup) -> str:
     described = library()
     cards = "\n".join(_card(name, described[name].description) for name in group.scenarios)
-    return f'## {group.title}\n\n{group.tests}\n\n<div class="gallery">\n{cards}\n</div>'
+    return f'## {group.title}\n\n**What they test:** {group.tests}\n\n<div class="gallery">\n{cards}\n</div>'
 
 
 def _card(name: str, description: str) -> str:
