@@ -14,7 +14,7 @@ from peopleboy.notebook import names_of, png_of
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Senses:
-    """Readings of the robot's sensors at one instant, cameras aside.
+    """Readings of the robot's sensors at one instant, except cameras.
 
     Attributes:
         time_s: [s] since the start.

@@ -1,4 +1,4 @@
-"""The simulated world: velocity commands in, observations and ground truth out."""
+"""The simulated world, which receives velocity commands and returns observations and ground truth."""
 
 from collections.abc import Collection, Mapping
 from functools import partial
@@ -42,8 +42,8 @@ _MOST_PEOPLE = 64  # a view's cover has one bit per person
 class SimulatedWorld:
     """A world with a robot, people and cameras; use it as a context manager.
 
-    `observe` returns what the robot senses now, `truth` the ground truth of the same instant; `step` advances
-    the world by one control step. The same configuration gives the same bytes in every process.
+    `observe` returns the current sensor readings, and `truth` the ground truth of the same instant. `step`
+    advances the world by one control step. The same configuration gives the same bytes in every process.
 
     Attributes:
         config: the settings.
@@ -100,7 +100,7 @@ class SimulatedWorld:
 
     @property
     def touching(self) -> tuple[str, ...]:
-        """Names of the bodies that the robot touches, the floor aside."""
+        """Names of the bodies that the robot touches, except the floor."""
         return tuple(sorted(self._touching)) if self._touching else ()
 
     @property
@@ -191,7 +191,7 @@ class SimulatedWorld:
         )
 
     def box(self, person: int) -> Box | None:
-        """Return a person's truth box in the thermal image, faster than by `truth`.
+        """Return a person's ground-truth box in the thermal image; this is faster than `truth`.
 
         Args:
             person: number, from 1 in the scenario's order.

@@ -41,7 +41,7 @@ class Track:
             for a tracker that works on the floor only.
         place: position on the floor; None if unknown, as in footage.
         confidence: 0..1, how well the images support the track.
-        status: whether the person is confirmed, and how much of it is occluded.
+        status: whether the person is confirmed, and how much of the person is occluded.
         age_s: time since the track was initiated [s].
         occluder: id of the person who occludes this one; None if there is none, or none known.
     """

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Tracker(Protocol):
-    """Interface of trackers: frames in, tracks out."""
+    """Interface of trackers, which receive frames and return tracks."""
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -81,7 +81,7 @@ def explanation_of(tracker: Tracker) -> object:
 
 
 def knows_again(tracker: Tracker) -> bool:
-    """Return whether a tracker re-identifies people, however long they were absent: its `knows_again`.
+    """Return whether a tracker re-identifies people after long absences: its `knows_again`.
 
     Then a new id is always a new person. Trackers without the attribute do not.
     """

@@ -97,7 +97,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         observation: "pixels"; "tracks", the output of the tracker; or "truth", the output of a perfect
             tracker, for which nothing is rendered.
         image_size: width and height [px] of all images.
-        cameras: names of the cameras whose images `pixels` contains, others are not rendered; None for all.
+        cameras: names of the cameras in "pixels"; others are not rendered. None for all.
         tracker: name of the tracker that computes "tracks"; "truth" for exact boxes; None for the scenario's.
         randomise: options of every episode for which `reset` gets none.
         render_mode: "rgb_array" for `render`; "human" to show every step in rerun's viewer, a window, or a
@@ -250,7 +250,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """Drive for one control step.
 
         Raises:
-            BadInput: the action is not two finite numbers, or no episode is under way.
+            BadInput: the action is not two finite numbers, or no episode is in progress.
         """
         shares, world = check_actions(action, (2,)), self._running()
         linear_m_s, angular_rad_s = (shares[0] * self._own["limits"]).tolist()

@@ -1,4 +1,4 @@
-"""Hand-written behaviours as controllers of an environment: observations in, actions out."""
+"""Hand-written behaviours as controllers of an environment, which map observations to actions."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -38,10 +38,10 @@ class CommandSpec:
 
     from_s: Annotated[Seconds, Field(description="time from which the command is valid")]
     linear_m_s: Annotated[
-        float, Field(ge=-2.0, le=2.0, description="forward speed; negative is backwards")
+        float, Field(ge=-2.0, le=2.0, description="forward speed; negative values drive backwards")
     ] = 0.0
     angular_deg_s: Annotated[
-        float, Field(ge=-360.0, le=360.0, description="turn rate; positive turns left")
+        float, Field(ge=-360.0, le=360.0, description="turn rate; positive values turn left")
     ] = 0.0
 
 

@@ -35,7 +35,9 @@ class RgbdCamera:
     height_m: Annotated[
         float, Field(alias="camera_height_m", description="Height of the depth camera above the floor.")
     ] = 1.2
-    pitch_deg: Annotated[float, Field(description="Pitch of the depth camera; positive points down.")] = 0.0
+    pitch_deg: Annotated[
+        float, Field(description="Pitch of the depth camera; positive values point down.")
+    ] = 0.0
     focal_px: Annotated[
         float | None, Field(description="Focal length of the depth camera, instead of --vertical-fov-deg.")
     ] = None

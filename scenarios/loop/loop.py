@@ -48,20 +48,20 @@ Images = Mapping[str, NDArray[Any]]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Tick:
-    """One step of the loop: everything sensed, true, tracked and decided at one instant.
+    """One step of the loop: sensor readings, ground truth, tracks and decisions of one instant.
 
     Attributes:
         frame: 1, 2, ...
         observation: the robot's sensor readings.
         truths: ground truth by camera that took an image at this instant; for cameras other than `thermal` it
-            is computed when first accessed, which must be before the next tick.
+            is computed on first access, which must be before the next tick.
         tracks: output of the tracker.
         explanation: the tracker's explanation, drawn according to its type; None for none.
         mode: mode of the behaviour, such as "search" or "follow".
         command: the robot's next command.
         reason: reason for the mode.
         following: id of the track that the robot follows; None for none.
-        failed: what is wrong with each failed camera, by its name.
+        failed: error of each failed camera, by name.
     """
 
     frame: int
@@ -111,7 +111,7 @@ class Perception:
 
     Attributes:
         tracks: tracks of the last image that was processed.
-        failed: what is wrong with each failed camera, by its name.
+        failed: error of each failed camera, by name.
     """
 
     def __init__(self, tracker: Tracker, cameras: Mapping[str, CameraConfig]) -> None:
@@ -130,8 +130,8 @@ class Perception:
 
         Images that are bit-identical to the last ones are not new, because camera noise never repeats. The
         exception is a view colder than the thermal camera's span, which has no noise: a uniform image may be
-        new. Images of failed cameras are withheld from tracker and behaviour; the tracker goes on with those
-        of the other cameras if it can.
+        new. Images of failed cameras are not passed to tracker and behaviour. If possible, the tracker
+        continues with the images of the other cameras.
         """
         newest = self._newest
         images = {name: observation.images[name] for name in self._watched if name in observation.images}

@@ -13,8 +13,8 @@ from peopleboy.sim.world_config import WorldConfig
 class World(SimulatedWorld):
     """A simulated world; use it as a context manager.
 
-    `observe` returns the robot's sensor readings, `truth` the ground truth of the same instant; `step` drives
-    the robot for one control step, 1/15 s.
+    `observe` returns the robot's sensor readings, and `truth` the ground truth of the same instant. `step`
+    drives the robot for one control step, 1/15 s.
 
         with World("crossing_2", seed=3) as world:
             tracker = make_tracker("detection")

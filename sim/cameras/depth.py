@@ -119,9 +119,9 @@ _LEVELS, _MOVES = _hole_levels(), _edge_moves()
 def structured_light(view: View, config: DepthConfig, rng: np.random.Generator) -> Millimetres:
     """Measure depth by the disparity of a projected pattern.
 
-    Noise and quantisation are in disparity, so that both grow with the square of the depth. There is no
+    Noise and quantisation apply to the disparity, so both grow with the square of the depth. There is no
     reading where the projector's light does not fall, to the right of near objects, and in patches that grow
-    in number with depth. Edges are frayed: some pixels read the surface beside them.
+    in number with depth. Edges are frayed: some pixels measure the adjacent surface.
 
     Source: Khoshelham & Oude Elberink 2012.
     """

@@ -2,7 +2,7 @@
 
 Temperature of each surface point -> band radiance, with emissivity and mirrored surroundings -> optics and
 rotation blur -> apparent temperature -> detector noise -> 16 bit at 10 mK.
-`electronics.Gain` makes 8-bit grey of it.
+`electronics.Gain` converts it to 8-bit grey levels.
 """
 
 from dataclasses import dataclass

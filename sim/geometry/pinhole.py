@@ -40,10 +40,10 @@ class Pinhole:
         ),
     ] = (0.14, 0.0, 1.2)
     pitch_rad: Annotated[
-        float, IN_DEGREES, Field(ge=-90.0, le=90.0, description="pitch; positive points down")
+        float, IN_DEGREES, Field(ge=-90.0, le=90.0, description="pitch; positive values point down")
     ] = 0.0
     yaw_rad: Annotated[
-        float, IN_DEGREES, Field(ge=-180.0, le=180.0, description="yaw; positive points left")
+        float, IN_DEGREES, Field(ge=-180.0, le=180.0, description="yaw; positive values point left")
     ] = 0.0
 
     @property

@@ -120,7 +120,7 @@ class Reaction:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lead:
-    """How a person leads the robot along a path. The person looks back now and then, waits and calls.
+    """How a person leads the robot along a path, looking back now and then, waiting and calling.
 
     Raises:
         BadInput: a value is out of range.
@@ -260,7 +260,7 @@ class WalkConfig:
 class ActorConfig(WalkConfig):
     """A person whose body is not specified yet."""
 
-    name: Annotated[Name, Field(description="name, unique in the scenario")]
+    name: Annotated[Name, Field(description="name of the person, unique in the scenario")]
     bag: Annotated[bool, Field(description="whether the person carries a bag")] = False
     arms: Annotated[Arms, Field(description="position of the arms while walking")] = "swinging"
     leads: Annotated[

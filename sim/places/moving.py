@@ -74,7 +74,7 @@ class Action:
         at_s: [s] start.
         takes_s: [s] duration; 0 for `appear` and `vanish`.
         target: pose of the thing at the end.
-        hinge_m: (x, y) [m] position of the vertical axis of rotation; None without rotation.
+        hinge_m: (x, y) [m] position of the vertical axis of rotation; None for no rotation.
         by: name of the person who moves it by hand, or None.
     """
 

@@ -100,7 +100,7 @@ class AnyPlaceConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class RoomConfig(AnyPlaceConfig):
-    """A rectangular room. x is 0 to `length_m`, and y is up to half the width on either side."""
+    """A rectangular room; x is from 0 to `length_m`, y up to half the width on either side."""
 
     kind: Annotated[Literal["room"], Field(description="a rectangular room")]
     length_m: Annotated[Length, Field(description="length along x")]
@@ -112,7 +112,7 @@ class RoomConfig(AnyPlaceConfig):
 
 @dataclass(frozen=True, kw_only=True)
 class CorridorConfig(AnyPlaceConfig):
-    """A straight corridor. x is 0 to `length_m`, and y is up to half the width on either side."""
+    """A straight corridor; x is from 0 to `length_m`, y up to half the width on either side."""
 
     kind: Annotated[Literal["corridor"], Field(description="a straight corridor")]
     length_m: Annotated[Length, Field(description="length along x")]
@@ -165,7 +165,7 @@ class TCorridorConfig(AnyPlaceConfig):
 
 @dataclass(frozen=True, kw_only=True)
 class StreetConfig(AnyPlaceConfig):
-    """A street: a road between two pavements, with x from 0 and y up to half the width on either side."""
+    """A road between two pavements; x is from 0 to `length_m`, y up to half the width on either side."""
 
     kind: Annotated[Literal["street"], Field(description="a street with houses and sky")]
     length_m: Annotated[float, Field(ge=5.0, le=40.0, description="length along x")]

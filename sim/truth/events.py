@@ -43,9 +43,9 @@ class Event:
 
 
 class EventLog:
-    """Turns a sequence of truths into events, each reported once, when it happens.
+    """Convert a sequence of ground truths to events, each reported once, when it happens.
 
-    Each occluder has a separate occlusion, which ends at the latest when the hidden person leaves the view or
+    Each occluder has a separate occlusion. It ends when the hidden person leaves the view or
     the image. A person who has not entered the view yet can only be occluded by people: a person who waits
     behind a wall causes no event.
     """
@@ -126,7 +126,7 @@ _SOON_S = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Move:
-    """Move of a thing from one rest to the next.
+    """Movement of a thing from one rest position to the next.
 
     Attributes:
         from_s, to_s: [s] start and end of the move.
@@ -163,7 +163,7 @@ class ThingEvent:
 
 
 class ThingLog:
-    """Turns a sequence of truths into events, each reported once; a move when the thing has come to rest."""
+    """Convert a sequence of ground truths to events. A move is reported when the thing comes to rest."""
 
     def __init__(self) -> None:
         self._watched: dict[str, _EventWatch] = {}

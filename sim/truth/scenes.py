@@ -40,7 +40,7 @@ class Bystander(NamedTuple):
         velocity_m_s: (x, y) [m/s] world frame.
         height_m, radius_m: [m] size of the upright body that represents the person in contacts and sonar.
         distance_m: [m] on the floor from the robot's origin.
-        bearing_rad: [rad] from the robot's nose, positive to the left.
+        bearing_rad: [rad] from the robot's heading, positive to the left.
         box: left, top, width, height [px] of that upright body in the thermal image, whatever the posture, as
             if nothing hid it; None when it is not before the camera.
         free_ray_share: share of five points up the body's middle that are inside the thermal image with
@@ -72,7 +72,7 @@ class ImageFreeTruth(NamedTuple):
         time_s: [s] since the start.
         robot: true pose of the robot.
         robot_velocity: true forward speed [m/s] and turn rate [rad/s].
-        contacts: names of the bodies that the robot touches, the floor aside.
+        contacts: names of the bodies that the robot touches, except the floor.
         people: all present people, in the scenario's order.
     """
 
@@ -95,7 +95,7 @@ SCENE: Final = np.dtype(
         ("end", np.int64),
     ]
 )
-"""An `ImageFreeTruth`, people and names aside."""
+"""An `ImageFreeTruth` without people and names."""
 
 BYSTANDER: Final = np.dtype(
     [
@@ -111,7 +111,7 @@ BYSTANDER: Final = np.dtype(
         ("free_ray_share", np.float64),
     ]
 )
-"""A `Bystander`, its name aside."""
+"""A `Bystander` without its name."""
 
 
 class Scenes(NamedTuple):
@@ -121,7 +121,7 @@ class Scenes(NamedTuple):
         worlds: (G,) records SCENE.
         people: (Q,) records BYSTANDER of all present people, world by world.
         names: names of all people in each world, present or not, in the order of their numbers.
-        contacts: names of the bodies that each robot touches, the floor aside.
+        contacts: names of the bodies that each robot touches, except the floor.
     """
 
     worlds: Records
@@ -188,10 +188,10 @@ class Uprights(NamedTuple):
 
     Attributes:
         boxes: (Q, 4) [px] left, top, width, height; NaN where a person is not in front of the camera.
-        reaches_in: (Q,) whether any of the box lies in the image.
+        reaches_in: (Q,) whether part of the box is inside the image.
         eyes: (Q, 3) [m] position of each one's camera, world frame.
         points: (Q, 5, 3) [m] points on each person's axis, world frame.
-        is_inside: (Q, 5) whether each lies in the image.
+        is_inside: (Q, 5) whether each point is inside the image.
     """
 
     boxes: Matrix

@@ -144,11 +144,11 @@ class PersonTruth:
         posture: such as "standing".
         distance_m: [m] on the floor from the camera.
         is_counted: whether the person counts in evaluation at that distance (`is_counted`).
-        box: head to feet, with the width of the torso without arms, ignoring occlusion (T 3.3); None when
-            nothing of it is in front of the camera.
+        box: from head to feet, as wide as the torso without arms, ignoring occlusion (T 3.3); None if the
+            person is not in front of the camera.
         whole_box: the whole silhouette ignoring occlusion, also outside the image; None as above.
         visible_box: the visible pixels; None when there are none.
-        whole_px: pixels of the whole silhouette, those outside the image included, as far as one image size
+        whole_px: pixels of the whole silhouette, including those outside the image, up to one image size
             beyond each border.
         visible_px: number of pixels that show the person.
         visible_fraction: visible_px / whole_px; 0 when whole_px is 0.
@@ -193,23 +193,23 @@ class PersonTruth:
 
     @property
     def is_in_image(self) -> bool:
-        """Whether any of the silhouette lies inside the image, ignoring occlusion."""
+        """Whether part of the silhouette is inside the image, ignoring occlusion."""
         return self.inside_fraction > 0.0
 
     @property
     def occluded_fraction(self) -> float:
-        """Share of the silhouette inside the image that others hide; 1 when none of it is in the image."""
+        """Share of the silhouette inside the image that is occluded; 1 if the person is outside the image."""
         inside = self.inside_fraction
         return max(0.0, 1.0 - self.visible_fraction / inside) if inside > 0.0 else 1.0
 
     def hidden_inside(self, other: str) -> float:
-        """Share of the silhouette inside the image that one person or thing hides."""
+        """Share of the silhouette inside the image that is hidden by one person or thing."""
         inside = self.inside_fraction
         return self.hidden_by.get(other, 0.0) / inside if inside > 0.0 else 0.0
 
     @property
     def occluder(self) -> str | None:
-        """The person or thing that hides most of this person, the image border aside, or None."""
+        """The person or thing that hides most of this person, or None; the image border does not count."""
         others = {name: share for name, share in self.hidden_by.items() if name != BORDER}
         return max(others, key=lambda name: others[name]) if others else None
 
@@ -228,7 +228,7 @@ class Truth:
         world_from_camera: (4, 4) pose of its optical frame.
         robot: true pose of the robot.
         robot_velocity: true forward speed [m/s] and turn rate [rad/s].
-        contacts: names of the bodies that the robot touches, the floor aside.
+        contacts: names of the bodies that the robot touches, except the floor.
         things: all moving things of the place, present or not.
         owners: the person, thing or wall at each pixel.
         background_m: renders the (H, W) [m] depth without people and moving things; it costs one rendering.

@@ -80,7 +80,7 @@ def regions_of(states: Sequence[NDArray[np.floating]], config: TrackerConfig) ->
 
 
 def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
-    """Return g_ij (N, M): the share of the rectangle of sample i that lies in region j.
+    """Return g_ij (N, M): the share of the rectangle of sample i inside region j.
 
     Source: thesis, section 5.2, "the amount of overlap between particle i and region j", read as a share of
     the sample's own area.

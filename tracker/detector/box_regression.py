@@ -21,7 +21,7 @@ class BoxRegression:
     """Trees for each of the offsets.
 
     Attributes:
-        patches: all that nodes ask for.
+        patches: all patches that the nodes use.
         feature: (4, T, 7) int32, as in a `Cascade`.
         threshold: (4, T, 7) float32.
         leaf: (4, T, 8) float32; the sum over all trees is the offset.

@@ -88,9 +88,9 @@ def evaluate(
     standing: Places | None = None,
     believed: Places | None = None,
 ) -> Scores:
-    """Score the tracks of one sequence against its truth.
+    """Score the tracks of one sequence against its ground truth.
 
-    All tracks are taken as confirmed. A frame without targets is a frame without people, also after the last
+    All tracks count as confirmed. A frame without targets is a frame without people, also after the last
     target: candidates in it are false positives.
 
     Args:
@@ -107,7 +107,7 @@ def evaluate(
         believed: the tracker's positions on the floor; None if it has none.
 
     Raises:
-        BadInput: a target or candidate lies beyond `frames`, or an argument is out of range.
+        BadInput: a target or candidate is beyond `frames`, or an argument is out of range.
     """
     frames = _length(truth, tracks, frames)
     judged = settle_uncounted(truth, tracks, rule=uncounted, min_visible=min_visible)

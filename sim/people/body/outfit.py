@@ -28,7 +28,7 @@ Carried = Literal["nothing", "rucksack", "shoulder_bag", "shopping_bag"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outfit:
-    """How one person wears its clothes, and what it carries; the defaults are those of the catalogue.
+    """How a person wears clothes, and what the person carries; the defaults are those of the catalogue.
 
     Attributes:
         coat: length of a jacket: over the hips, or to the middle of the thighs.
