@@ -19,7 +19,7 @@ _MIDDLE: Final = (
 # What fills less of the image, or is narrower, may leave it in one step: behind the edge of a wall or a door.
 _TALL: Final = 0.2  # [image heights]
 _WIDE: Final = 0.1  # share of the square of its height that a pattern fills; 0.17 for a person who stands
-_NOISY_PX: Final = 50  # so many noisy pixels do not repeat by chance
+_NOISY_PX: Final = 50  # so many noisy pixels, counted over consecutive images, do not repeat by chance
 _LATE_S: Final = 0.1  # a frame more than the shutter's time
 
 # Cameras with images that may be uniform: a view colder than the span, or beyond a camera's reach.
@@ -37,6 +37,9 @@ class CameraHealth:
     Args:
         cameras: settings of the robot's cameras, by name.
         watched: names of those to watch; the others are not rendered.
+
+    Attributes:
+        only_repeats: whether the images of the last instant repeat earlier ones; uniform ones do not count.
     """
 
     def __init__(self, cameras: Mapping[str, CameraConfig], watched: tuple[str, ...]) -> None:
@@ -44,12 +47,15 @@ class CameraHealth:
         self._watched = watched
         self._last: dict[str, tuple[Image, float]] = {}  # the last image that was new, and its time
         self._dead: dict[str, Image] = {}  # first image without dynamic range of each camera that has failed
+        self._same_px: dict[str, int] = {}  # noisy pixels that have repeated since the last new image
+        self.only_repeats = False
 
     def check(self, observation: Observation) -> dict[str, str]:
         """Return what is wrong with each camera that has failed at this instant; empty if all work."""
         images, time_s = observation.images, observation.time_s
         faults: dict[str, str] = {}
         flat: dict[str, Image] = {}
+        repeated: set[str] = set()
         for name in self._watched:
             image = images.get(name)
             if image is None:
@@ -57,11 +63,13 @@ class CameraHealth:
                     faults[name] = "no image"
             elif _is_flat(image):
                 flat[name] = image
-            elif name in self._last and _is_repeated(self._last[name][0], image):
+            elif self._is_repeated(name, image):
+                repeated.add(name)
                 if time_s - self._last[name][1] > self._shutter_s(name):
                     faults[name] = "the image repeats"
             else:
                 self._last[name] = image, time_s
+        self.only_repeats = bool(repeated) and repeated | flat.keys() >= images.keys() & set(self._watched)
         dead = {name for name, image in flat.items() if self._is_dead(name, image, time_s)}
         self._dead = {name: self._dead.get(name, flat[name]) for name in dead}
         for name, image in flat.items():
@@ -70,6 +78,20 @@ class CameraHealth:
             if name not in dead:
                 self._last[name] = image, time_s
         return faults
+
+    def _is_repeated(self, name: str, image: Image) -> bool:
+        """Return whether a camera repeats its image; a few noisy pixels must do so several times.
+
+        The noise of a pixel does not show in its extremes, and a camera without noise may repeat its image.
+        """
+        if not (self._cameras[name].is_noisy and name in self._last):
+            return False
+        if not np.array_equal(self._last[name][0], image):
+            self._same_px[name] = 0
+            return False
+        noisy_px = int(np.count_nonzero((image > image.min()) & (image < image.max())))
+        self._same_px[name] = self._same_px.get(name, 0) + noisy_px
+        return self._same_px[name] >= _NOISY_PX
 
     def _is_dead(self, name: str, image: Image, time_s: float) -> bool:
         """Return whether an image without dynamic range is a failure by itself."""
@@ -102,13 +124,6 @@ class CameraHealth:
 
 def _is_flat(image: Image) -> bool:
     return int(image.max()) - int(image.min()) <= FLAT
-
-
-def _is_repeated(last: Image, image: Image) -> bool:
-    """Return whether an image equals the last one and has enough noisy pixels, which are not extremes."""
-    if not np.array_equal(last, image):
-        return False
-    return int(np.count_nonzero((image > image.min()) & (image < image.max()))) >= _NOISY_PX
 
 
 def _has_pattern(image: Image) -> bool:

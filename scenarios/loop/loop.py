@@ -3,10 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Protocol
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Behaviour, Command
@@ -41,9 +38,6 @@ def thermal_box(track: Track, calibration: Calibration) -> Box | None:
     if THERMAL in track.boxes:
         return track.boxes[THERMAL]
     return None if track.place is None else standing_box(track.place, calibration)
-
-
-Images = Mapping[str, NDArray[Any]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -121,38 +115,35 @@ class Perception:
         self._watched = tuple(dict.fromkeys((THERMAL, *tracker.cameras)))
         self._health = CameraHealth(cameras, tuple(name for name in self._watched if name in cameras))
         self._newest: Observation | None = None
-        self._images: Images = {}
         self.tracks: tuple[Track, ...] = ()
         self.failed: Mapping[str, str] = {}
 
     def perceive(self, observation: Observation) -> Percept:
         """Update the tracker if the images are new, and return the input of the behaviour.
 
-        Images that are bit-identical to the last ones are not new, because camera noise never repeats. The
-        exception is a view colder than the thermal camera's span, which has no noise: a uniform image may be
-        new. Images of failed cameras are not passed to tracker and behaviour. If possible, the tracker
-        continues with the images of the other cameras.
+        Images that repeat the last ones are not new, see `CameraHealth`. Images of failed cameras are not
+        passed to tracker and behaviour. If possible, the tracker continues with the images of the other
+        cameras.
         """
         newest = self._newest
-        images = {name: observation.images[name] for name in self._watched if name in observation.images}
         self.failed = self._health.check(observation)
         sound = self._without_failed(observation)
         percept_of = partial(
             make_percept, sound, self._cameras, self._calibrations, knows_again=knows_again(self._tracker)
         )
-        if newest is not None and _are_same(self._images, images):
+        if newest is not None and self._health.only_repeats:
             return percept_of(self.tracks, image_age_s=observation.time_s - newest.time_s)
         before = None if newest is None else newest.odometry
         frame = Frame.from_observation(sound, before, self._calibrations)
         try:
             tracks = self._update(frame)
         except TrackerDown as error:  # the robot must keep driving safely without its tracker
-            self._newest, self._images, self.tracks = observation, images, ()
+            self._newest, self.tracks = observation, ()
             return percept_of((), fault=f"the tracker failed: {error}")
         if tracks is None:
             self.tracks = ()
             return percept_of((), fault=self._describe_failure())
-        self._newest, self._images, self.tracks = observation, images, tracks
+        self._newest, self.tracks = observation, tracks
         return percept_of(self.tracks)
 
     def _describe_failure(self) -> str:
@@ -248,11 +239,6 @@ def make_percept(
         knows_again=knows_again,
         fault=fault,
     )
-
-
-def _are_same(old: Images, new: Images) -> bool:
-    are_equal = all(name in old and np.array_equal(old[name], image) for name, image in new.items())
-    return are_equal and any(image.min() < image.max() for image in new.values())
 
 
 def see_person(track: Track, box: Box, width: int, height: int) -> SeenPerson:

@@ -68,6 +68,11 @@ class CameraConfig:
         """Whether an image depends on earlier ones, so that every image must be rendered."""
         return False
 
+    @property
+    def is_noisy(self) -> bool:
+        """Whether each image has new noise, so that no two images are equal."""
+        return True
+
     def resized(self, width: int, height: int) -> Self:
         """Return the camera with another image size [px] and the same vertical field of view."""
         return replace(self, camera=replace(self.camera, width=width, height=height))
@@ -247,6 +252,11 @@ class ThermalConfig(CameraConfig):
         has_changes = any(value > 0.0 for value in (*changes, self.coring_k))
         return self.gain == "fixed" and self.jpeg_quality is None and not has_changes
 
+    @property
+    def is_noisy(self) -> bool:
+        """Whether each image has new noise."""
+        return self.netd_k > 0.0
+
     def resized(self, width: int, height: int) -> Self:
         """Return the camera with another image size [px], the same vertical field of view and sharpness."""
         camera, larger = replace(self.camera, width=width, height=height), height / self.camera.height
@@ -287,6 +297,11 @@ class LightConfig(CameraConfig):
     shot_noise: Annotated[
         Share, Field(description="noise of a white pixel: standard deviation, as a share of full scale")
     ] = 0.012
+
+    @property
+    def is_noisy(self) -> bool:
+        """Whether each image has new noise."""
+        return self.read_noise > 0.0 or self.shot_noise > 0.0
 
     def noisier(self, factor: float) -> Self:
         """Return the camera with its noise multiplied by a factor."""
@@ -383,6 +398,11 @@ class DepthConfig(LightConfig):
     def disparity_px_m(self) -> float:
         """Disparity [px] at a depth of 1 m, in pixels of the sensor, which has 480 rows."""
         return self.camera.focal_px * _DEPTH_ROWS / self.camera.height * DEPTH_BASELINE_M
+
+    @property
+    def is_noisy(self) -> bool:
+        """Whether each depth image has new noise."""
+        return self.scale > 0.0
 
     def noisier(self, factor: float) -> Self:
         """Return the camera with the noise of depth and colour multiplied by a factor."""

@@ -5,7 +5,7 @@ import pytest
 
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.loop.camera_health import CameraHealth
-from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, ThermalConfig
 from peopleboy.sim.observation import Observation
 
 CAMERAS = {"thermal": ThermalConfig(), "colour": ColourConfig()}
@@ -87,6 +87,39 @@ def test_a_frozen_or_missing_image_is_a_failure_of_that_camera_alone(health):
     assert health.check(observed(thermal=warm(31), colour=lit())) == {}
     assert health.check(observed(colour=lit())) == {"thermal": "no image"}
     assert health.check(observed(thermal=warm(31), colour=lit())) == {}
+
+
+def test_a_few_noisy_pixels_may_be_equal_by_chance_but_not_for_long():
+    health = CameraHealth(CAMERAS, ("thermal",))
+    lamp = COLD.copy()
+    lamp[:4, :5] = np.arange(20).reshape(4, 5)  # 18 of its pixels lie between the darkest and the brightest
+    found = [(bool(health.check(observed(thermal=lamp))), health.only_repeats) for _ in range(5)]
+    assert found == [(False, False)] * 3 + [(True, True)] * 2
+    assert not health.check(observed(thermal=lamp + 1))
+    assert not health.only_repeats
+    assert not health.check(observed(thermal=lamp))
+
+
+@pytest.mark.parametrize(
+    ("name", "camera", "image"),
+    [
+        ("thermal", ThermalConfig(netd_k=0.0), warm(30)),
+        ("colour", ColourConfig(read_noise=0.0, shot_noise=0.0), lit()),
+        ("depth", DepthConfig(scale=0.0), 1000 + np.arange(4800, dtype=np.uint16).reshape(60, 80)),
+    ],
+)
+def test_a_camera_without_noise_may_repeat_its_image(name, camera, image):
+    health = CameraHealth({name: camera}, (name,))
+    for _ in range(3):
+        assert health.check(observed(**{name: image})) == {}
+        assert not health.only_repeats
+
+
+def test_all_images_must_repeat():
+    health, person, wall = CameraHealth(CAMERAS, ("thermal", "colour")), warm(30), lit()
+    for colour, repeats in ((wall, False), (lit(), False), (wall, False), (wall, True)):
+        health.check(observed(thermal=person, colour=colour))
+        assert health.only_repeats == repeats
 
 
 def test_a_frozen_camera_may_have_a_cold_view_when_it_works_again(health):
