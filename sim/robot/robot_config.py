@@ -73,10 +73,17 @@ class DriveConfig:
     angular_acceleration_rad_s2: Annotated[
         float, Field(gt=0.0, description="rate at which the turn rate changes [rad/s2]")
     ] = math.radians(200.0)
-    # The robot is tall and has its castor at the rear: harder braking lifts its rear.
+    # The robot is tall and has its castor at the rear: harder braking lifts its rear. At the end of a stop it
+    # has no time to rise: by 0.8 degrees at most, which lets it rest within 0.3 s from its highest speed.
     emergency_m_s2: Annotated[
         float, Field(gt=0.0, description="rate at which the forward speed falls in an emergency stop [m/s2]")
-    ] = 2.2
+    ] = 2.3
+    emergency_end_m_s2: Annotated[
+        float, Field(gt=0.0, description="the same at the end of the stop [m/s2]")
+    ] = 4.0
+    emergency_end_m_s: Annotated[
+        float, Field(ge=0.0, description="forward speed below which the end of the stop begins [m/s]")
+    ] = 0.3
     emergency_rad_s2: Annotated[
         float, Field(gt=0.0, description="rate at which the turn rate falls in an emergency stop [rad/s2]")
     ] = math.radians(400.0)
