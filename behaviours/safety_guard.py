@@ -57,7 +57,7 @@ class SonarFailure:
         self._config = SonarFailureConfig() if config is None else config
         self._nearest_m = np.inf
         self._driven_m = 0.0
-        self._is_silent = self._is_deaf = False
+        self._is_silent = self._is_deaf = self._is_stuck = False
         self._time_s = np.nan
         self._raw: Points = np.zeros(0)
         self.has_heard = False
@@ -77,8 +77,10 @@ class SonarFailure:
             self._nearest_m, self.free_m, self._driven_m = float(np.min(ranges, initial=np.inf)), np.inf, 0.0
             self._is_silent = self._is_deaf = False
             self.has_heard = True
-            is_stuck = is_repeated and abs(percept.linear_m_s) > self._config.moving_m_s
-            return "the sonars have failed: they repeat their readings" if is_stuck else ""
+            # A stuck ring is so until its readings change, also when the robot has stopped.
+            is_moving = abs(percept.linear_m_s) > self._config.moving_m_s
+            self._is_stuck = is_repeated and (self._is_stuck or is_moving)
+            return "the sonars have failed: they repeat their readings" if self._is_stuck else ""
         reach_m = float(ranges[0])
         misses_echo = not self._is_silent and self._nearest_m < min(self._config.sure_m, reach_m)
         self._is_silent = True

@@ -118,7 +118,7 @@ def drive_in(scenario: Scenario, seed: int, name: str) -> Drive:
     config, log, rows = scenario.world(seed, "raycast"), ContactLog(), []
     nearest_m = math.inf
     with SimulatedWorld(config) as world:
-        stage = FaultySensors(world, faults, config.robot.sonar.farthest_m)
+        stage = FaultySensors(world, faults)
         frames = round(scenario.duration_s * config.control_hz)
         for tick in closed_loop(stage, FaultyTracker(tracker, faults), scenario.make_behaviour(), frames):
             truth = tick.truth

@@ -255,7 +255,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         shares, world = check_actions(action, (2,)), self._running()
         linear_m_s, angular_rad_s = (shares[0] * self._own["limits"]).tolist()
         self._commands.append(Command(linear_m_s=linear_m_s, angular_rad_s=angular_rad_s))
-        share = self.grip
+        share = self.disturb()
         world.step(share * linear_m_s, share * angular_rad_s)
         tracks = self._perceive(world)
         outcomes = self._episodes.evaluate(self._snapshot, shares, tracks)
@@ -295,10 +295,14 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """Whether sensors fail in the scenario."""
         return self._faults is not None
 
-    @property
-    def grip(self) -> float:
-        """Share of the commanded motion that the robot makes now: less than 1 while its wheels slip."""
-        return 1.0 if self._faults is None else self._faults.slip(self._running(even_over=True).time_s)
+    def disturb(self) -> float:
+        """Disturb the robot at the start of a step, as the scenario's faults ask.
+
+        Returns:
+            The share of the commanded motion that the robot makes: less than 1 while its wheels slip.
+        """
+        world = self._running(even_over=True)
+        return 1.0 if self._faults is None else self._faults.disturb(world.robot, world.time_s)
 
     def spoil(self, senses: Senses) -> Senses:
         """Apply the active faults of the scenario to readings."""

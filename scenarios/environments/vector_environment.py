@@ -250,7 +250,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         commands = (shares * self._episodes.records["limits"])[active]
         if not any(env.has_faults for env in self._envs):
             return self._together.step(active, commands)
-        commands *= np.array([[self._envs[number].grip] for number in active.tolist()])
+        commands *= np.array([[self._envs[number].disturb()] for number in active.tolist()])
         return [
             each.with_senses(
                 [self._envs[k].spoil(each.senses(row)) for row, k in enumerate(each.numbers.tolist())]

@@ -64,7 +64,7 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
     tracks, people = files.tracks_by_frame(), files.people_by_frame()
     explanations = files.explanations_by_frame(run.about.tracker)
     with SimulatedWorld(run.world) as world:
-        stage = FaultySensors(world, run.scenario.spec.faults, run.robot.sonar.farthest_m)
+        stage = FaultySensors(world, run.scenario.spec.faults)
         for row in files.robot.to_pylist():
             frame = row["frame"]
             command = _command(row)

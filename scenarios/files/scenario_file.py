@@ -22,11 +22,11 @@ from peopleboy.sim.shapes.materials import Detail
 
 CameraFault = Literal[
     "camera_lost", "camera_frozen", "camera_black", "camera_saturated", "camera_shutter", "frames_dropped",
-    "frames_late", "frames_duplicated", "dead_rows", "noise_bursts", "calibration_off",
+    "frames_late", "frames_duplicated", "dead_rows", "noise_bursts", "calibration_off", "calibration_turned",
 ]  # fmt: skip
 SonarFault = Literal["sonar_maximum", "sonar_stuck"]
 Failure = Literal[
-    CameraFault, SonarFault, "wheel_slip", "odometry_jumps", "odometry_drift",
+    CameraFault, SonarFault, "wheel_slip", "odometry_jumps", "odometry_drift", "robot_pushed", "robot_lifted",
     "tracker_overload", "tracker_raises",
 ]  # fmt: skip
 
@@ -46,8 +46,11 @@ STRENGTHS: Final[Mapping[str, Strength]] = {
     "dead_rows": Strength("the share of black rows", 0.2, 1.0),
     "noise_bursts": Strength("the standard deviation of the noise [grey levels]", 60.0, 255.0),
     "calibration_off": Strength("the shift to the right [share of the image width]", 0.1, 0.5),
+    "calibration_turned": Strength("the angle by which the camera looks too low [deg]", 3.0, 20.0),
     "wheel_slip": Strength("the share of the motion that is lost", 0.3, 0.9),
     "odometry_drift": Strength("the excess distance, as a share of the true distance", 0.2, 1.0),
+    "robot_pushed": Strength("the speed to the left [m/s]", 0.2, 1.0),
+    "robot_lifted": Strength("the distance back along the robot's path [m]", 1.5, 20.0),
     "tracker_overload": Strength("the number of frames skipped after each processed frame", 2.0, 30.0),
 }
 """Kinds of faults that have a strength."""
@@ -63,7 +66,7 @@ class LightSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultSpec:
-    """A temporary failure of a sensor or of the tracker."""
+    """A temporary failure of a sensor or of the tracker, or a disturbance of the robot."""
 
     kind: Annotated[
         Failure,
@@ -75,12 +78,15 @@ class FaultSpec:
             "by the frame before; `frames_late`: images are delayed; `frames_duplicated`: every "
             "image is repeated; `dead_rows`: rows of the image are black; `noise_bursts`: every "
             "other image is noisy; `calibration_off`: the image is shifted sideways; "
+            "`calibration_turned`: the camera looks lower than its calibration says; "
             "`sonar_maximum`: sonars report their maximum range; `sonar_stuck`: sonars repeat "
             "their readings; `wheel_slip`: the robot moves less than its wheels turn; "
             "`odometry_jumps`: the odometry pose jumps immediately, and again every second; "
-            "`odometry_drift`: the odometry overestimates distances; `tracker_overload`: the "
-            "tracker skips frames and repeats its tracks; `tracker_raises`: the tracker raises "
-            "an error at every image"
+            "`odometry_drift`: the odometry overestimates distances; `robot_pushed`: the robot is "
+            "pushed sideways while it drives; `robot_lifted`: the robot is lifted, put down where "
+            "it was before, turned by 90 degrees to the left, and its motors are off during the "
+            "fault; `tracker_overload`: the tracker skips frames and repeats its tracks; "
+            "`tracker_raises`: the tracker raises an error at every image"
         ),
     ]
     from_s: Annotated[Seconds, Field(description="start of the failure")]

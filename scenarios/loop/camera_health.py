@@ -20,6 +20,7 @@ _MIDDLE: Final = (
 _TALL: Final = 0.2  # [image heights]
 _WIDE: Final = 0.1  # share of the square of its height that a pattern fills; 0.17 for a person who stands
 _NOISY_PX: Final = 50  # so many noisy pixels, counted over consecutive images, do not repeat by chance
+_CARRIED_M: Final = 0.3  # a median change of the sonar ranges within a frame that driving does not explain
 _LATE_S: Final = 0.1  # a frame more than the shutter's time
 
 # Cameras with images that may be uniform: a view colder than the span, or beyond a camera's reach.
@@ -32,7 +33,8 @@ class CameraHealth:
     A colour image without dynamic range is a failure. A thermal image without it is one only if another
     camera fails at the same time, or if something was in the middle of the last image that cannot have left
     it since: a view colder than the thermal camera's span has no noise, and is uniform. Camera noise never
-    repeats, so an image that equals the last one is a failure as well, but for the time of a shutter.
+    repeats, so an image that equals the last one is a failure as well, but for the time of a shutter. If most
+    sonar ranges jump at the same time, the robot was carried, and anything may have left the view.
 
     Args:
         cameras: settings of the robot's cameras, by name.
@@ -48,6 +50,8 @@ class CameraHealth:
         self._last: dict[str, tuple[Image, float]] = {}  # the last image that was new, and its time
         self._dead: dict[str, Image] = {}  # first image without dynamic range of each camera that has failed
         self._same_px: dict[str, int] = {}  # noisy pixels that have repeated since the last new image
+        self._failed: set[str] = set()
+        self._sonar_m: Image = np.zeros(0)
         self.only_repeats = False
 
     def check(self, observation: Observation) -> dict[str, str]:
@@ -70,14 +74,27 @@ class CameraHealth:
             else:
                 self._last[name] = image, time_s
         self.only_repeats = bool(repeated) and repeated | flat.keys() >= images.keys() & set(self._watched)
-        dead = {name for name, image in flat.items() if self._is_dead(name, image, time_s)}
+        # Whatever made several cameras fail has ended if one of them works again.
+        may_be_cold = self._is_carried(observation.sonar_m) or bool(
+            self._failed & images.keys() - flat.keys() - faults.keys()
+        )
+        dead = {
+            name
+            for name, image in flat.items()
+            if not (may_be_cold and self._may_be_flat(name)) and self._is_dead(name, image, time_s)
+        }
         self._dead = {name: self._dead.get(name, flat[name]) for name in dead}
         for name, image in flat.items():
             if dead:
                 faults[name] = _describe(image)
             if name not in dead:
                 self._last[name] = image, time_s
+        self._failed = set(faults)
         return faults
+
+    def _is_carried(self, sonar_m: Image) -> bool:
+        before, self._sonar_m = self._sonar_m, sonar_m
+        return before.shape == sonar_m.shape and bool(np.median(np.abs(sonar_m - before)) > _CARRIED_M)
 
     def _is_repeated(self, name: str, image: Image) -> bool:
         """Return whether a camera repeats its image; a few noisy pixels must do so several times.

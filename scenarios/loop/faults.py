@@ -1,4 +1,4 @@
-"""Simulate the sensor and tracker faults of a scenario, to test how controllers cope with them."""
+"""Simulate the faults and disturbances of a scenario, to test how controllers cope with them."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -8,12 +8,15 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario_file import FaultSpec
-from peopleboy.scenarios.loop.loop import Stage, TrackerDown
+from peopleboy.scenarios.loop.loop import TrackerDown
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.observation import Observation, OnDemand, Senses
+from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.truth.truth import Truth
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.frame import Frame, Odometry, joined
 from peopleboy.tracker.track import Track
@@ -23,15 +26,19 @@ Current = tuple[FaultSpec, float]  # a fault that is active, and the time [s] si
 _REPEATING = ("camera_frozen", "camera_shutter", "frames_dropped", "frames_late", "frames_duplicated")
 _SPOILING = (
     "camera_lost", "camera_black", "camera_saturated", "dead_rows", "noise_bursts", "calibration_off",
+    "calibration_turned",
 )  # fmt: skip
 JUMP_EVERY_S = 1.0
 JUMP = Pose2(x=0.7, y=-0.4, heading=math.radians(50.0))
 
+CARRIED_TURN = Pose2(heading=math.radians(90.0))
 
 _SHUTTER_S, _SHUTTER_EVERY_S = 0.4, 2.0
+_FAR_M = 1e4  # so far away, the position of a camera does not matter
 _HISTORY_S = 2.1  # images are kept for so long; a delay is at most 2 s
 
 Image = NDArray[Any]
+Pixels = tuple[NDArray[np.int64], NDArray[np.int64]]  # rows and columns (H, W)
 Sensed = TypeVar("Sensed", bound=Senses)
 
 
@@ -55,6 +62,9 @@ class SensorFaults:
         self._sonar_m: NDArray[np.float64] | None = None
         self._true: Pose2 | None = None
         self._odometry = Pose2()
+        self._path: list[Pose2] = []  # true poses, one per step, until the robot is lifted
+        self._is_carried = any(fault.kind == "robot_lifted" for fault in faults)
+        self._turned: dict[tuple[str, float], Pixels] = {}
 
     def apply(self, seen: Sensed) -> Sensed:
         """Return the readings with the active faults."""
@@ -76,9 +86,26 @@ class SensorFaults:
                 seen = replace(seen, odometry=_jumped(seen.odometry, since_s))
         return seen
 
-    def slip(self, time_s: float) -> float:
-        """Return the share of the commanded motion that the robot makes."""
-        return _product_of(_current(self._faults, time_s), "wheel_slip", lambda lost: 1.0 - lost)
+    def disturb(self, robot: PeopleBot, time_s: float) -> float:
+        """Push or carry the robot at the start of a control step.
+
+        Returns:
+            The share of the commanded motion that the robot makes in this step.
+        """
+        now = _current(self._faults, time_s)
+        share = _product_of(now, "wheel_slip", lambda lost: 1.0 - lost)
+        for fault, _ in now:
+            if fault.kind == "robot_pushed":
+                robot.push(0.0, fault.chosen_strength / CONTROL_HZ)
+        lifted = [fault for fault, _ in now if fault.kind == "robot_lifted"]
+        if not lifted:
+            if self._is_carried:
+                self._path.append(robot.pose())
+            return share
+        if self._path:
+            robot.put(_pose_before(self._path, lifted[0].chosen_strength).compose(CARRIED_TURN))
+            self._path.clear()
+        return 0.0
 
     def _faulty_images(self, seen: Observation, now: Sequence[Current]) -> Mapping[str, Image]:
         """Return the images with the faults; those that later images depend on are rendered at once."""
@@ -98,11 +125,29 @@ class SensorFaults:
         def spoil(name: str) -> Image:
             image = found[name]
             for fault, seed in spoilt:
-                if _is_hit(fault, name):
+                if not _is_hit(fault, name):
+                    continue
+                if fault.kind == "calibration_turned":
+                    image = self._turned_down(name, image, fault, seen.calibrations)
+                else:
                     image = _spoilt(image, fault, int(seed))
             return image
 
         return OnDemand(found, spoil)
+
+    def _turned_down(
+        self, name: str, image: Image, fault: FaultSpec, calibrations: Mapping[str, Calibration]
+    ) -> Image:
+        """Return the image of a camera that looks lower; beyond its edge the image of the edge."""
+        camera = next((each for each in calibrations if _is_of(name, each)), None)
+        if camera is None:
+            return image
+        key = name, fault.chosen_strength
+        if key not in self._turned:
+            down_rad = math.radians(fault.chosen_strength)
+            self._turned[key] = _pixels_below(calibrations[camera], image.shape[:2], down_rad)
+        rows, columns = self._turned[key]
+        return image[rows, columns]
 
     def _repeated(self, name: str, image: Image, time_s: float, now: Sequence[Current]) -> Image:
         """Return a camera's image, or an earlier one."""
@@ -144,16 +189,13 @@ class SensorFaults:
 class FaultySensors:
     """A world whose sensors and wheels fail as the scenario asks; the ground truth stays correct."""
 
-    def __init__(self, world: Stage, faults: Sequence[FaultSpec], sonar_reach_m: float) -> None:
+    def __init__(self, world: SimulatedWorld, faults: Sequence[FaultSpec]) -> None:
         self._world = world
-        self._faults = SensorFaults(faults, sonar_reach_m)
-        self._time_s = 0.0
+        self._faults = SensorFaults(faults, world.config.robot.sonar.farthest_m)
 
     def observe(self) -> Observation:
         """Read every sensor once, and apply the active faults."""
-        seen = self._faults.apply(self._world.observe())
-        self._time_s = seen.time_s
-        return seen
+        return self._faults.apply(self._world.observe())
 
     @property
     def cameras(self) -> Mapping[str, CameraConfig]:
@@ -166,7 +208,7 @@ class FaultySensors:
 
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
         """Drive the robot for one control step."""
-        share = self._faults.slip(self._time_s)
+        share = self._faults.disturb(self._world.robot, self._world.time_s)
         self._world.step(share * linear_m_s, share * angular_rad_s, is_emergency=is_emergency)
 
 
@@ -206,7 +248,8 @@ class FaultyTracker:
             raise TrackerDown("RuntimeError: as the scenario asks")
         overload = now.get("tracker_overload")
         if overload is None and self._skipped == 0:
-            return self._tracker.update(frame)
+            self._tracks = self._tracker.update(frame)
+            return self._tracks
         self._way = joined(self._way, frame.odometry)
         if overload is not None and self._skipped < overload.chosen_strength:
             self._skipped += 1
@@ -231,7 +274,11 @@ def _current(faults: Sequence[FaultSpec], time_s: float) -> list[Current]:
 
 def _is_hit(fault: FaultSpec, image: str) -> bool:
     """Return whether a fault concerns an image, such as `thermal` or `thermal_c`."""
-    return fault.camera is None or image == fault.camera or image.startswith(f"{fault.camera}_")
+    return fault.camera is None or _is_of(image, fault.camera)
+
+
+def _is_of(image: str, camera: str) -> bool:
+    return image == camera or image.startswith(f"{camera}_")
 
 
 def _product_of(now: Sequence[Current], kind: str, factor: Callable[[float], float]) -> float:
@@ -244,6 +291,29 @@ def _overwritten(
     """Return ranges in which the fault's sonar, or all of them, have another value."""
     is_hit = np.ones(len(ranges), bool) if fault.sonar is None else np.arange(len(ranges)) == fault.sonar
     return np.where(is_hit, value, ranges)
+
+
+def _pixels_below(calibration: Calibration, shape: Sequence[int], down_rad: float) -> Pixels:
+    """Return the row and column (H, W) in an image at which each pixel of a camera that looks lower looks."""
+    height, width = shape
+    v, u = np.mgrid[:height, :width]
+    rays = calibration.rays(np.stack([u.ravel(), v.ravel()], axis=1).astype(np.float64))
+    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+    cos, sin = math.cos(down_rad), math.sin(down_rad)
+    lower = rays @ np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+    found = np.nan_to_num(calibration.project(calibration.position_m + _FAR_M * lower), nan=height)
+    columns, rows = np.rint(found.T).astype(np.int64).reshape(2, height, width)
+    return np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)
+
+
+def _pose_before(path: Sequence[Pose2], distance_m: float) -> Pose2:
+    """Return the pose at which a robot was, so far back along its path; the first one of a shorter path."""
+    left_m = distance_m
+    for k in range(len(path) - 1, 0, -1):
+        left_m -= math.hypot(path[k].x - path[k - 1].x, path[k].y - path[k - 1].y)
+        if left_m <= 0.0:
+            return path[k - 1]
+    return path[0]
 
 
 def _spoilt(image: Image, fault: FaultSpec, seed: int) -> Image:

@@ -187,7 +187,7 @@ def run(
         observers = RunObservers(config, title, recorder, options.boxes, faults=faults, is_secret=is_secret)
         _LOG.info("%s: the world is built; running %d frames", scenario.name, frames)
         began_s = time.monotonic()
-        stage = FaultySensors(world, faults, config.robot.sonar.farthest_m)
+        stage = FaultySensors(world, faults)
         checked = CheckedTracker(tracker, f"tracker {name!r}", config.robot.cameras)
         eyes = FaultyTracker(checked, faults)
         for tick in closed_loop(stage, eyes, scenario.make_behaviour(), frames):

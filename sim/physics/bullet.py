@@ -162,6 +162,15 @@ class Bullet(Physics):
         for name, position, orientation in zip(names, *rows, strict=True):
             self.set_pose(name, position, orientation)
 
+    def shift(self, name: str, offset_m: Vector) -> None:
+        """See `Physics.shift`."""
+        body = self._bodies[name]
+        position, orientation = self._base_place(body)
+        velocity = self._client.getBaseVelocity(body.ids[0])
+        to = position[0] + offset_m[0], position[1] + offset_m[1], position[2] + offset_m[2]
+        self._put(body, (to, orientation))
+        self._client.resetBaseVelocity(body.ids[0], *velocity)  # PyBullet stops a body that is put elsewhere
+
     def set_hidden(self, name: str, hidden: bool) -> None:
         """See `Physics.set_hidden`."""
         body = self._bodies[name]

@@ -123,6 +123,13 @@ class Kinematic(Physics):
         """See `Physics.set_poses`; not for the vehicle."""
         self._bodies.put([self.numbers[name] for name in names], positions, orientations)
 
+    def shift(self, name: str, offset_m: Vector) -> None:
+        """See `Physics.shift`."""
+        rolling = self._vehicle_called(name, ())
+        rolling.motion.pose[:2] += offset_m[:2]
+        place_on_floor(rolling.motion.pose, self._bodies.places[rolling.body])
+        self._bodies.stale[rolling.body] = True
+
     def set_hidden(self, name: str, hidden: bool) -> None:
         """See `Physics.set_hidden`."""
         number = self.numbers[name]

@@ -138,6 +138,10 @@ class Physics(ABC):
         """Place base frames of N bodies at positions (N, 3) [m] and orientations (N, 4), like `set_pose`."""
 
     @abstractmethod
+    def shift(self, name: str, offset_m: Vector) -> None:
+        """Move a body that moves by itself by an offset, world frame; it keeps its velocity."""
+
+    @abstractmethod
     def set_hidden(self, name: str, hidden: bool) -> None:
         """Remove a body from images, rays and contacts, or restore it at its last pose.
 

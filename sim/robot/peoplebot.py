@@ -23,6 +23,7 @@ from peopleboy.sim.robot.robot_body import (
 )
 from peopleboy.sim.robot.robot_config import DriveConfig, RobotConfig
 from peopleboy.sim.robot.sonar import SonarRing
+from peopleboy.sim.shapes.shapes import Quaternion, Vector
 
 _JOINTS = ("left_wheel_joint", "right_wheel_joint")
 _MOTOR_TORQUE_NM = 4.0
@@ -74,14 +75,9 @@ class PeopleBot:
             command=np.zeros(2), target=np.zeros(2), rise=np.array(self.limits.rise), turned=np.zeros(2),
             odometry=np.array([x, y, config.heading_rad]),
         )  # fmt: skip
-        half = config.heading_rad / 2.0
-        physics.add_urdf(
-            NAME,
-            URDF,
-            position=(x, y, 0.0),
-            orientation=(0.0, 0.0, math.sin(half), math.cos(half)),
-            fixed=False,
-        )
+        self._is_emergency = False
+        position, orientation = _place(Pose2(x, y, config.heading_rad))
+        physics.add_urdf(NAME, URDF, position=position, orientation=orientation, fixed=False)
         self._turn_wheels()
         self.ring = SonarRing(physics, config.sonar, stream(seed, "sonar.noise"), NAME)
         self.gears.turned[:] = self._wheel_angles()
@@ -99,11 +95,25 @@ class PeopleBot:
         limits, gears = self.limits, self.gears
         gears.target[:] = limit_command(linear, angular, limits)
         gears.rise[:] = limits.emergency_rise if is_emergency else limits.rise
+        self._is_emergency = is_emergency
 
     def drive(self, dt_s: float) -> None:
         """Move the wheel speeds towards the command, as far as the acceleration limits allow in dt_s."""
+        if self._is_emergency and abs(self.gears.command[0]) <= self.limits.emergency_end_m_s:
+            self.gears.rise[0] = self.limits.emergency_end_m_s2
         if approach_target(self.gears, dt_s):
             self._turn_wheels()
+
+    def push(self, ahead_m: float, left_m: float) -> None:
+        """Shift the robot, which keeps its speed; its wheels do not turn, so the odometry does not notice."""
+        to = self.pose().compose(Pose2(ahead_m, left_m))
+        self._physics.shift(NAME, (to.x - self.pose().x, to.y - self.pose().y, 0.0))
+
+    def put(self, pose: Pose2) -> None:
+        """Put the robot at a pose on the floor, at rest; the odometry does not notice."""
+        self._physics.set_pose(NAME, *_place(pose))
+        self.gears.command[:] = 0.0
+        self._turn_wheels()
 
     def update_odometry(self) -> None:
         """Integrate the noisy counts of the wheel encoders since the last call."""
@@ -163,6 +173,12 @@ class PeopleBot:
     def _wheel_angles(self) -> NDArray[np.float64]:
         angles, _ = self._physics.joint_states(NAME, _JOINTS)
         return angles
+
+
+def _place(pose: Pose2) -> tuple[Vector, Quaternion]:
+    """Return the position and orientation of a body that stands on the floor."""
+    half = pose.heading / 2.0
+    return (pose.x, pose.y, 0.0), (0.0, 0.0, math.sin(half), math.cos(half))
 
 
 @njit(cache=True, nogil=True)

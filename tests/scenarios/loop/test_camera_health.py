@@ -14,10 +14,10 @@ SEEDS = iter(range(10000))
 TIMES = iter(range(10000))
 
 
-def observed(**images):
+def observed(sonar_m=1.0, **images):
     return Observation(
         time_s=next(TIMES) / 15.0,
-        sonar_m=np.zeros(16),
+        sonar_m=np.full(16, sonar_m),
         odometry=Pose2(),
         wheel_speeds_m_s=(0.0, 0.0),
         images=images,
@@ -77,6 +77,20 @@ def test_a_cold_view_fails_with_a_black_colour_image_and_works_with_the_next_one
     health.check(observed(thermal=COLD, colour=lit()))
     black = np.zeros((60, 80, 3), np.uint8)
     assert set(health.check(observed(thermal=COLD, colour=black))) == {"thermal", "colour"}
+    assert health.check(observed(thermal=COLD, colour=lit())) == {}
+
+
+def test_a_robot_that_was_carried_may_have_a_cold_view(health):
+    health.check(observed(thermal=warm(30), colour=lit()))
+    assert health.check(observed(thermal=COLD, colour=lit(), sonar_m=2.0)) == {}
+    assert health.check(observed(thermal=COLD, colour=lit(), sonar_m=2.0)) == {}
+
+
+def test_a_cold_view_is_sound_when_the_cameras_that_failed_with_it_work_again(health):
+    health.check(observed(thermal=warm(30), colour=lit()))
+    for _ in range(2):
+        found = health.check(observed(thermal=COLD, colour=np.zeros((60, 80, 3), np.uint8)))
+        assert set(found) == {"thermal", "colour"}
     assert health.check(observed(thermal=COLD, colour=lit())) == {}
 
 

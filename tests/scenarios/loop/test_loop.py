@@ -85,7 +85,7 @@ def test_a_tracker_goes_on_without_a_failed_camera_if_it_can(tmp_path, camera, s
     faults = [FaultSpec(kind="camera_saturated", from_s=0.1, lasts_s=0.2, camera=camera)]
     tracker = Cautious()
     with SimulatedWorld(scenario.world(0)) as world:
-        stage = FaultySensors(world, faults, 5.0)
+        stage = FaultySensors(world, faults)
         ticks = list(closed_loop(stage, tracker, "stand", 8))
     failed = {name for tick in ticks for name in tick.failed}
     assert failed == ({camera} if camera else {"thermal", "colour"})
