@@ -1,10 +1,12 @@
 """Common parts of all comparisons: trackers on sequences, their metrics, and tables."""
 
+import json
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from operator import attrgetter
-from typing import Final, TypeVar
+from pathlib import Path
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from rich.console import Console
@@ -66,6 +68,23 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], width: in
     for row in rows:
         table.add_row(*row)
     Console(width=width).print(table)
+
+
+def rows_of(
+    found: Mapping[str, Mapping[str, float | None]], columns: Mapping[str, str]
+) -> list[tuple[str, ...]]:
+    """Return the rows of a table of results, whose columns are given with their formats."""
+    return [
+        (name, *("" if one[key] is None else form.format(one[key]) for key, form in columns.items()))
+        for name, one in found.items()
+    ]
+
+
+def update_results(path: Path, found: Mapping[str, Any]) -> None:
+    """Write results to a JSON file; those of other keys stay."""
+    kept = json.loads(path.read_text("utf-8")) if path.is_file() else {}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(kept | dict(found), indent=1) + "\n", encoding="utf-8")
 
 
 # CPU times of contestants that take turns, as medians and ratios.

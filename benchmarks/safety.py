@@ -6,21 +6,22 @@ robot is at rest after a fault that blinds it.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
-from typing import Final, get_args
+from typing import Final, NamedTuple, get_args
 
 import click
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks import call
-from benchmarks.compare import compare, print_table
+from benchmarks.compare import compare, print_table, rows_of, update_results
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.scenario_file import Failure
+from peopleboy.scenarios.files.scenario_file import Failure, FaultSpec
 from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_named_tracker
@@ -30,12 +31,15 @@ from peopleboy.scenarios.scores.contacts import AT_REST_M_S, Contact, ContactLog
 from peopleboy.sim.robot.robot_body import outline_gap
 from peopleboy.sim.world import SimulatedWorld
 
+Floats = NDArray[np.float64]
+
 KINDS: Final[tuple[str, ...]] = get_args(Failure)
 BLINDING: Final = (
     "camera_lost", "camera_frozen", "camera_black", "camera_saturated", "sonar_stuck", "tracker_raises",
 )  # fmt: skip
 """Faults after which the robot must come to rest."""
 
+OUT: Final = Path("runs/safety.json")
 DRIVES_M: Final = 1.0
 _FAULT_S: Final = (10.0, 5.0)  # start and duration
 _SMALL: Final = {"width_px": 80, "height_px": 60}  # for true tracks, which need no image
@@ -137,53 +141,85 @@ def drive_in(scenario: Scenario, seed: int, name: str) -> Drive:
     )
     if not faults:
         return drive
-    first = int(np.argmax(path[:, 0] >= faults[0].from_s - 1e-6))
-    during = path[first:][path[first:, 0] < faults[0].from_s + (faults[0].lasts_s or math.inf)]
-    drive = replace(drive, speed_m_s=float(path[first, 3]))
-    at_rest = np.flatnonzero(during[:, 3] < AT_REST_M_S)
+    stop = measure_stop(path[:, 0], path[:, 3], driven, faults[0])
+    return replace(drive, speed_m_s=stop.speed_m_s, stopping_s=stop.after_s, stopping_m=stop.within_m)
+
+
+class Stop(NamedTuple):
+    """A stop after the beginning of a fault.
+
+    Attributes:
+        speed_m_s: [m/s] speed when the fault began.
+        after_s, within_m: [s], [m] from there until the robot was at rest; NaN if it was not within the
+            fault's duration.
+    """
+
+    speed_m_s: float
+    after_s: float = math.nan
+    within_m: float = math.nan
+
+
+def measure_stop(time_s: Floats, speed_m_s: Floats, driven_m: Floats, fault: FaultSpec) -> Stop:
+    """Measure how soon a robot is at rest after a fault begins.
+
+    Args:
+        time_s: (T,) [s] times of the frames.
+        speed_m_s: (T,) [m/s] absolute speeds.
+        driven_m: (T,) [m] distances driven.
+        fault: the fault.
+    """
+    first = int(np.argmax(time_s >= fault.from_s - 1e-6))
+    is_during = time_s[first:] < fault.from_s + (fault.lasts_s or math.inf)
+    stop = Stop(float(speed_m_s[first]))
+    at_rest = np.flatnonzero(is_during & (speed_m_s[first:] < AT_REST_M_S))
     if not len(at_rest):
-        return drive
+        return stop
     end = first + int(at_rest[0])
-    return replace(
-        drive,
-        stopping_s=float(path[end, 0] - path[first, 0]),
-        stopping_m=float(driven[end] - driven[first]),
-    )
+    # Between two frames the speed falls evenly, or faster at the end.
+    fall = speed_m_s[end - 1] - speed_m_s[end]
+    early_s = (time_s[end] - time_s[end - 1]) * (AT_REST_M_S - speed_m_s[end]) / fall if end > first else 0.0
+    after_s = float(time_s[end] - time_s[first] - early_s)
+    return stop._replace(after_s=after_s, within_m=float(driven_m[end] - driven_m[first]))
 
 
-def summarise(drives: Sequence[Drive]) -> list[list[str]]:
-    """Return the rows of the table: all worlds without a fault, and those of each kind of fault."""
-    rows = []
-    for fault in ("", *KINDS):
-        own = [drive for drive in drives if drive.fault == fault]
-        if not own:
-            continue
-        touched = [contact for drive in own for contact in drive.contacts]
-        by_robot = [contact for contact in touched if contact.cause == "robot"]
-        moving = [drive for drive in own if drive.speed_m_s > AT_REST_M_S]
-        stops = [drive for drive in moving if not math.isnan(drive.stopping_s)]
-        rows.append(
-            [
-                fault or "none",
-                str(len(own)),
-                f"{sum(drive.driven_m for drive in own):.0f}",
-                str(len(by_robot)),
-                f"{max((contact.robot_m_s for contact in by_robot), default=0.0):.2f}",
-                str(len(touched) - len(by_robot)),
-                f"{max((contact.relative_m_s for contact in touched), default=0.0):.2f}",
-                f"{min(drive.nearest_m for drive in own):.2f}",
-                f"{len(stops)}/{len(moving)}" if fault else "",
-                f"{max(drive.stopping_s for drive in stops):.2f}" if stops else "",
-                f"{max(drive.stopping_m for drive in stops):.2f}" if stops else "",
-            ]
-        )
-    return rows
+def groups_of(drives: Sequence[Drive]) -> dict[str, list[Drive]]:
+    """Return the drives without a fault, with one that blinds the robot, with any other, and of each kind."""
+    groups: dict[str, list[Drive]] = {"none": [], "blinding": [], "other": []}
+    for drive in drives:
+        group = "blinding" if drive.fault in BLINDING else "other" if drive.fault else "none"
+        groups[group].append(drive)
+        if drive.fault:
+            groups.setdefault(drive.fault, []).append(drive)
+    return {name: own for name, own in groups.items() if own}
 
 
-COLUMNS: Final = (
-    *("fault", "worlds", "driven, m", "contacts by robot", "fastest, m/s", "by person", "relative, m/s"),
-    *("nearest, m", "at rest", "after, s", "within, m"),
-)
+def summarise(drives: Sequence[Drive]) -> dict[str, float | None]:
+    """Return the results of some drives by the titles of `COLUMNS`; None where there are none."""
+    touched = [contact for drive in drives for contact in drive.contacts]
+    by_robot = [contact for contact in touched if contact.cause == "robot"]
+    moving = [drive for drive in drives if drive.speed_m_s > AT_REST_M_S]
+    stops = [drive for drive in moving if not math.isnan(drive.stopping_s)]
+    return {
+        "runs": len(drives),
+        "driven": sum(drive.driven_m for drive in drives),
+        "by robot": len(by_robot),
+        "fastest": max((contact.robot_m_s for contact in by_robot), default=None),
+        "by person": len(touched) - len(by_robot),
+        "relative": max((contact.relative_m_s for contact in touched), default=None),
+        "nearest": min(drive.nearest_m for drive in drives),
+        "driving": len(moving),
+        "at rest": len(stops),
+        "after": max((drive.stopping_s for drive in stops), default=None),
+        "within": max((drive.stopping_m for drive in stops), default=None),
+    }
+
+
+COLUMNS: Final[Mapping[str, str]] = {
+    "runs": "{}", "driven": "{:.0f} m", "by robot": "{}", "fastest": "{:.2f} m/s", "by person": "{}",
+    "relative": "{:.2f} m/s", "nearest": "{:.2f} m", "driving": "{}", "at rest": "{}", "after": "{:.2f} s",
+    "within": "{:.2f} m",
+}  # fmt: skip
+"""Columns of the table, with the format of their values."""
 
 
 def failures_in(drives: Sequence[Drive]) -> list[str]:
@@ -212,22 +248,27 @@ def failures_in(drives: Sequence[Drive]) -> list[str]:
 @click.option("--tracker", "trackers", multiple=True, default=("detection", ORACLE), show_default=True)
 @click.option("--workers", type=click.IntRange(min=1), default=None, help="processes; default one per core")
 def main(worlds: int, first: int, duration: float, trackers: tuple[str, ...], workers: int | None) -> None:
-    """Drive in random worlds with each tracker, and print contacts, closest approach and stops."""
-    unsafe = []
+    """Drive in random worlds with each tracker; print contacts, closest approach and stops.
+
+    The results are also written to runs/safety.json.
+    """
+    unsafe, found_by = [], {}
     for tracker in trackers:
         drives: list[Drive] = []
         seed = first
         while len(drives) < worlds and seed < first + 20 * worlds:
             tasks = [DriveTask(each, tracker, duration) for each in range(seed, seed + worlds - len(drives))]
             seed += len(tasks)
-            (found,) = compare({tracker: tasks}, chosen_workers(workers, None), tracker).values()
-            drives += [drive for drive in found if drive.driven_m >= DRIVES_M]
+            (more,) = compare({tracker: tasks}, chosen_workers(workers, None), tracker).values()
+            drives += [drive for drive in more if drive.driven_m >= DRIVES_M]
         drives = list(islice(drives, worlds))
         click.echo(
             f"Tracker {tracker}: {len(drives)} worlds with {DRIVES_M:g} m of travel in {seed - first} seeds."
         )
-        print_table(COLUMNS, summarise(drives), width=200)
+        found_by[tracker] = {name: summarise(own) for name, own in groups_of(drives).items()}
+        print_table(("fault", *COLUMNS), rows_of(found_by[tracker], COLUMNS), width=200)
         unsafe += [f"{tracker}: {line}" for line in failures_in(drives)]
+    update_results(OUT, found_by)
     for line in unsafe:
         click.echo(line)
     if unsafe:
