@@ -17,7 +17,7 @@ import numpy as np
 
 from benchmarks import call
 from benchmarks.compare import compare, print_table, rows_of, update_results
-from benchmarks.safety import KINDS, Stop, measure_stop
+from benchmarks.safety import KINDS, Stop, measure_stop, way_along
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import FaultSpec
@@ -102,7 +102,8 @@ class FaultTask:
 
     def __call__(self, report_progress: ReportProgress) -> FaultRun:
         """Run the scenario, and return the results."""
-        found = run_with(self.fault, load_scenario(self.scenario), self.seed, self.tracker)
+        scenario = load_scenario(self.scenario).lasting(DURATION_S)
+        found = run_with(self.fault, scenario, self.seed, self.tracker)
         report_progress(1)
         return found
 
@@ -112,7 +113,7 @@ def run_with(fault: str, scenario: Scenario, seed: int, tracker: str) -> FaultRu
     settings = FAULTS[fault]
     spec = FaultSpec(from_s=FROM_S, lasts_s=LASTS_S, **(settings or {"kind": "camera_lost"}))
     faults = (spec,) if settings else ()
-    scenario = replace(scenario, spec=replace(scenario.spec, faults=faults)).lasting(DURATION_S)
+    scenario = replace(scenario, spec=replace(scenario.spec, faults=faults))
     watch = DriveWatch()
     with TemporaryDirectory() as folder:
         options = RunOptions(
@@ -121,7 +122,7 @@ def run_with(fault: str, scenario: Scenario, seed: int, tracker: str) -> FaultRu
         scores = run(scenario, options, watch)
     assert scores.following is not None  # all scenarios are of following
     time_s, speed_m_s, x_m, y_m, follows = np.array(watch.rows).T
-    driven_m = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x_m), np.diff(y_m)))])
+    driven_m = way_along(np.stack([x_m, y_m], axis=1))
     again = time_s[(time_s >= FROM_S + LASTS_S - 1e-6) & (follows > 0.0)]
     return FaultRun(
         people=scores.people,

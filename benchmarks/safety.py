@@ -22,7 +22,7 @@ from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import Failure, FaultSpec
-from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
+from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker, active
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_named_tracker
 from peopleboy.scenarios.random_worlds.random_world import random_world
@@ -42,6 +42,7 @@ BLINDING: Final = (
 OUT: Final = Path("runs/safety.json")
 DRIVES_M: Final = 1.0
 _FAULT_S: Final = (10.0, 5.0)  # start and duration
+_CARRIED_M: Final = 0.2  # farther than the robot drives within a frame
 _SMALL: Final = {"width_px": 80, "height_px": 60}  # for true tracks, which need no image
 
 
@@ -131,18 +132,33 @@ def drive_in(scenario: Scenario, seed: int, name: str) -> Drive:
             gaps = [outline_gap(truth.robot, person.position_m) for person in truth.people]
             nearest_m = min([nearest_m, *gaps])
     path = np.array(rows)
-    driven = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path[:, 1:3], axis=0).T))])
+    driven = way_along(path[:, 1:3])
     drive = Drive(
         seed=seed,
         fault=faults[0].kind if faults else "",
         driven_m=float(driven[-1]),
         nearest_m=nearest_m,
-        contacts=tuple(log.contacts),
+        contacts=tuple(blamed(log.contacts, faults)),
     )
     if not faults:
         return drive
     stop = measure_stop(path[:, 0], path[:, 3], driven, faults[0])
     return replace(drive, speed_m_s=stop.speed_m_s, stopping_s=stop.after_s, stopping_m=stop.within_m)
+
+
+def way_along(positions: Floats) -> Floats:
+    """Return the distance (T,) [m] driven until each of some positions (T, 2); being carried is none."""
+    steps = np.hypot(*np.diff(positions, axis=0).T)
+    return np.concatenate([[0.0], np.cumsum(np.where(steps < _CARRIED_M, steps, 0.0))])
+
+
+def blamed(contacts: Sequence[Contact], faults: Sequence[FaultSpec]) -> list[Contact]:
+    """Return contacts of which those while the robot is pushed are caused by the person who pushes it."""
+    pushes = [fault for fault in faults if fault.kind == "robot_pushed"]
+    return [
+        replace(contact, cause="person") if active(pushes, contact.time_s) else contact
+        for contact in contacts
+    ]
 
 
 class Stop(NamedTuple):

@@ -98,9 +98,9 @@ class SensorFaults:
             if fault.kind == "robot_pushed":
                 robot.push(0.0, fault.chosen_strength / CONTROL_HZ)
         lifted = [fault for fault, _ in now if fault.kind == "robot_lifted"]
+        if self._is_carried and (not lifted or self._path):
+            self._path.append(robot.pose())
         if not lifted:
-            if self._is_carried:
-                self._path.append(robot.pose())
             return share
         if self._path:
             robot.put(_pose_before(self._path, lifted[0].chosen_strength).compose(CARRIED_TURN))

@@ -1,8 +1,23 @@
 import math
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from benchmarks.safety import KINDS, Drive, drive_in, failures_in, fault_of, summarise, world_of
+from benchmarks.safety import (
+    COLUMNS,
+    KINDS,
+    Drive,
+    blamed,
+    drive_in,
+    failures_in,
+    fault_of,
+    groups_of,
+    measure_stop,
+    summarise,
+    world_of,
+)
+from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.scores.contacts import Contact
 
 
@@ -36,11 +51,33 @@ def test_contacts_at_speed_and_a_robot_that_drives_on_blind_are_unsafe():
     assert not failures_in([drive("wheel_slip", speed_m_s=0.5)])
 
 
-def test_the_table_has_a_row_for_each_fault():
-    rows = summarise([drive(), drive("camera_black", contact(0.2, "robot"), speed_m_s=0.5, stopping_s=0.27)])
-    assert [row[0] for row in rows] == ["none", "camera_black"]
-    assert rows[1][3:5] == ["1", "0.20"]
-    assert rows[1][8:] == ["1/1", "0.27", "0.10"]
+def test_drives_are_grouped_by_fault_and_summarised():
+    stopped = drive("camera_black", contact(0.2, "robot"), speed_m_s=0.5, stopping_s=0.27)
+    groups = groups_of([drive(), stopped, drive("wheel_slip", contact(0.0, "person"))])
+    assert {name: len(own) for name, own in groups.items()} == {
+        "none": 1, "blinding": 1, "other": 1, "camera_black": 1, "wheel_slip": 1,
+    }  # fmt: skip
+    assert summarise(groups["none"])["fastest"] is None
+    found = summarise(groups["blinding"])
+    assert (found["by robot"], found["fastest"], found["at rest"], found["after"]) == (1, 0.2, 1, 0.27)
+    assert summarise(groups["other"])["by person"] == 1
+    assert list(found) == list(COLUMNS)
+
+
+def test_a_stop_is_measured_between_the_frames():
+    time_s, speed = np.arange(6) / 10.0, np.array([0.8, 0.8, 0.5, 0.1, 0.0, 0.0])
+    fault = FaultSpec(kind="camera_black", from_s=0.1, lasts_s=0.35)
+    stop = measure_stop(time_s, speed, np.cumsum(speed) / 10.0, fault)
+    assert stop == pytest.approx((0.8, 0.25, 0.06))
+    assert math.isnan(measure_stop(time_s, speed + 1.0, speed, fault).after_s)
+    assert measure_stop(time_s, 0.0 * speed, speed, fault).after_s == 0.0
+
+
+def test_a_contact_while_the_robot_is_pushed_is_not_its_own():
+    fault = FaultSpec(kind="robot_pushed", from_s=0.5, lasts_s=1.0)
+    late = replace(contact(0.4, "robot"), time_s=3.0)
+    found = blamed([contact(0.4, "robot"), late], [fault])
+    assert [one.cause for one in found] == ["person", "robot"]
 
 
 @pytest.mark.slow
