@@ -1,1 +1,1 @@
-"""Benchmarks of what survives kills, long runs and thousands of environments."""
+"""Benchmarks of faults, kills, long runs and thousands of environments."""

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from benchmarks.faults import COLUMNS, FAULTS, FROM_S, LASTS_S, FaultRun, run_with, summarise
+from benchmarks.reliability.faults import COLUMNS, FAULTS, FROM_S, LASTS_S, FaultRun, run_with, summarise
 from benchmarks.safety import KINDS, Stop
 from peopleboy.scenarios.files.load import load_scenario
 
@@ -22,7 +22,7 @@ def test_every_kind_of_fault_is_measured():
 
 def test_only_a_robot_that_drives_can_stop(monkeypatch):
     scores = SimpleNamespace(mot=SimpleNamespace(hota=SimpleNamespace(hota=80.0)))
-    monkeypatch.setattr("benchmarks.faults.combine", lambda _: scores)
+    monkeypatch.setattr("benchmarks.reliability.faults.combine", lambda _: scores)
     runs = [found(0.5, 0.2, 0.3), found(0.7, math.nan, math.nan), found(0.9, 0.4, 0.0, speed_m_s=0.0)]
     row = summarise(runs, [found(1.0, 0.0, math.nan)])
     assert list(row) == list(COLUMNS)

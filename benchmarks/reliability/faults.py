@@ -1,4 +1,4 @@
-"""Effect of every kind of fault on tracking and following: `python -m benchmarks.faults`.
+"""Effect of every kind of fault on tracking and following: `python -m benchmarks.reliability.faults`.
 
 The robot follows a person in three scenarios, with several seeds each, once without a fault and once with
 each kind. Reported are HOTA, the share of the time in which the person is tracked, the distance error, how
@@ -185,4 +185,4 @@ def main(seeds: int, tracker: str, names: tuple[str, ...], workers: int | None) 
 
 
 if __name__ == "__main__":
-    call(main, "benchmarks.faults")
+    call(main, "benchmarks.reliability.faults")
