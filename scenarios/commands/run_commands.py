@@ -58,7 +58,7 @@ def run(
     workers: "Workers",
     output: Output,
 ) -> None:
-    """Run a scenario, and record and score it.
+    """Simulate a scenario, record it, and score its tracks.
 
     SCENARIO is a name from `peopleboy list`, the path of a YAML file, or a suite, such as dataset1. The run
     folder contains ground truth, tracks, scores and a recording.
