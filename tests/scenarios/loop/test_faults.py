@@ -235,6 +235,29 @@ def test_a_lifted_robot_is_put_down_where_it_was_and_held_there(distance_m, x):
     assert (robot.where.y, robot.where.heading) == pytest.approx((0.2, math.pi / 2.0))
 
 
+@pytest.mark.parametrize("physics", ["bullet", "kinematic"])
+def test_wheels_do_not_notice_pushes_and_lifts(physics):
+    faults = [
+        {"kind": "robot_pushed", "from_s": 2.0, "lasts_s": 1.0},
+        {"kind": "robot_lifted", "from_s": 4.0, "lasts_s": 1.0, "strength": 1.0},
+    ]
+    scenario = parse_scenario(broken(*faults, physics=physics, people=[]), source="test", folder=Path())
+    found = {}
+    with SimulatedWorld(scenario.world(0)) as world:
+        stage = FaultySensors(world, scenario.spec.faults)
+        for k in range(75):
+            found[k / 15] = world.robot.pose(), world.robot.odometry, world.robot.velocity()[0]
+            stage.step(0.4, 0.0)
+    pose, odometry, speed_m_s = found[3.0]
+    assert (pose.x, pose.y, speed_m_s) == pytest.approx((odometry.x, 0.2, 0.4), abs=0.02)
+    assert odometry.y == pytest.approx(0.0, abs=0.02)
+    (before, _, _), (after, odometry, speed_m_s) = found[4.0], found[74 / 15]
+    assert after.x == pytest.approx(before.x - 1.0, abs=0.05)
+    assert after.heading == pytest.approx(math.pi / 2.0, abs=0.02)
+    assert speed_m_s == pytest.approx(0.0, abs=0.01)
+    assert odometry.x == pytest.approx(before.x, abs=0.03)
+
+
 @pytest.mark.parametrize("camera", ["thermal", "panorama"])
 def test_a_camera_that_looks_too_low_shows_everything_higher(camera):
     config = RobotConfig().cameras["thermal"] if camera == "thermal" else PanoramaConfig()
@@ -389,13 +412,37 @@ def test_settings_that_a_fault_does_not_have_are_refused(tmp_path, fault, words)
 def test_faults_work_in_environments(tmp_path):
     file = tmp_path / "broken.yaml"
     file.write_text(json.dumps(broken({"kind": "sonar_maximum", "from_s": 0.1}, physics="kinematic")))
-    for env in (
-        PeopleBoyEnv(str(file), observation="truth"),
-        PeopleBoyVectorEnv(2, scenario=str(file), observation="truth"),
-    ):
+    for env in both_environments(file):
         shape = env.action_space.shape
         env.reset(seed=1)
         for _ in range(4):
             observation = env.step(np.zeros(shape, np.float32))[0]
         assert (observation["sonar"] == 5.0).all()
         env.close()
+
+
+def both_environments(file):
+    return (
+        PeopleBoyEnv(str(file), observation="truth"),
+        PeopleBoyVectorEnv(2, scenario=str(file), observation="truth"),
+    )
+
+
+def test_environments_push_and_lift_robots(tmp_path):
+    file = tmp_path / "pushed.yaml"
+    push = {"kind": "robot_pushed", "from_s": 0.0, "lasts_s": 0.5, "strength": 0.6}
+    lift = {"kind": "robot_lifted", "from_s": 0.6, "lasts_s": 0.2}
+    file.write_text(json.dumps(broken(push, lift, physics="kinematic")))
+    single, vector = both_environments(file)
+    single.reset(seed=1)
+    vector.reset(seed=[1, 2])
+    poses = []
+    for _ in range(12):
+        single.step(np.zeros(2, np.float32))
+        vector.step(np.zeros((2, 2), np.float32))
+        poses.append(single.world.robot.pose())
+        assert vector._envs[0].world.robot.pose() == poses[-1]
+    assert poses[7].y == pytest.approx(0.6 * 8 / 15)
+    assert poses[-1].heading == pytest.approx(math.pi / 2.0)
+    single.close()
+    vector.close()
