@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
-from typing import Final, NamedTuple, get_args
+from typing import Final, Literal, NamedTuple, get_args
 
 import click
 import numpy as np
@@ -41,7 +41,7 @@ BLINDING: Final = (
 
 OUT: Final = Path("runs/safety.json")
 DRIVES_M: Final = 1.0
-_FAULT_S: Final = (10.0, 5.0)  # start and duration
+LASTS_S: Final = 5.0  # duration of a fault
 _CARRIED_M: Final = 0.2  # farther than the robot drives within a frame
 _SMALL: Final = {"width_px": 80, "height_px": 60}  # for true tracks, which need no image
 
@@ -54,6 +54,7 @@ class Drive:
         seed: seed of the world.
         fault: kind of its fault; empty for none.
         driven_m: [m] distance driven.
+        fastest_s: [s] when it drove fastest, before the last `LASTS_S`.
         nearest_m: [m] smallest gap between the robot's outline and the middle of a person.
         contacts: what the robot touched.
         speed_m_s: [m/s] speed when the fault began; NaN without a fault.
@@ -64,6 +65,7 @@ class Drive:
     seed: int
     fault: str
     driven_m: float
+    fastest_s: float
     nearest_m: float
     contacts: tuple[Contact, ...]
     speed_m_s: float = math.nan
@@ -89,14 +91,32 @@ class DriveTask:
         """Number of worlds."""
         return 1
 
-    def __call__(self, report_progress: ReportProgress) -> Drive:
-        """Drive, and return what happened."""
-        drive = drive_in(world_of(self.seed, self.tracker, self.duration_s), self.seed, self.tracker)
+    def __call__(self, report_progress: ReportProgress) -> Drive | None:
+        """Drive, and return what happened; None if the robot hardly drives."""
+        drive = drive_of(self.seed, self.tracker, self.duration_s)
         report_progress(1)
         return drive
 
 
-def fault_of(seed: int) -> str:
+def drive_of(seed: int, tracker: str, duration_s: float) -> Drive | None:
+    """Drive in the world of a seed, with its fault if it has one.
+
+    A fault begins when the robot drives fastest, as an earlier drive without it shows.
+
+    Returns:
+        What happened; None if the robot drives less than `DRIVES_M` without a fault.
+    """
+    scenario = world_of(seed, tracker, duration_s)
+    drive = drive_in(scenario, seed, tracker)
+    if drive.driven_m < DRIVES_M:
+        return None
+    if fault := fault_of(seed):
+        spec = FaultSpec(kind=fault, from_s=drive.fastest_s, lasts_s=LASTS_S)
+        drive = drive_in(replace(scenario, spec=replace(scenario.spec, faults=(spec,))), seed, tracker)
+    return drive
+
+
+def fault_of(seed: int) -> Failure | Literal[""]:
     """Return the kind of fault in the world of a seed; empty in two of three."""
     return KINDS[seed // 3 % len(KINDS)] if seed % 3 == 0 else ""
 
@@ -110,9 +130,6 @@ def world_of(seed: int, tracker: str, duration_s: float) -> Scenario:
         data["robot"]["cameras"] = {
             name: camera | _SMALL for name, camera in data["robot"]["cameras"].items()
         }
-    if fault := fault_of(seed):
-        from_s, lasts_s = _FAULT_S
-        data["faults"] = [{"kind": fault, "from_s": min(from_s, duration_s / 2.0), "lasts_s": lasts_s}]
     return parse_scenario(data, source=f"world {seed}", folder=Path())
 
 
@@ -133,10 +150,12 @@ def drive_in(scenario: Scenario, seed: int, name: str) -> Drive:
             nearest_m = min([nearest_m, *gaps])
     path = np.array(rows)
     driven = way_along(path[:, 1:3])
+    early = path[: -round(LASTS_S * config.control_hz)]
     drive = Drive(
         seed=seed,
         fault=faults[0].kind if faults else "",
         driven_m=float(driven[-1]),
+        fastest_s=float(early[np.argmax(early[:, 3]), 0]),
         nearest_m=nearest_m,
         contacts=tuple(blamed(log.contacts, faults)),
     )
@@ -259,7 +278,7 @@ def failures_in(drives: Sequence[Drive]) -> list[str]:
 )
 @click.option("--first", type=click.IntRange(min=0), default=0, help="first seed")
 @click.option(
-    "--duration", type=click.FloatRange(min=1.0, max=600.0), default=30.0, help="length of a drive [s]"
+    "--duration", type=click.FloatRange(min=10.0, max=600.0), default=30.0, help="length of a drive [s]"
 )
 @click.option("--tracker", "trackers", multiple=True, default=("detection", ORACLE), show_default=True)
 @click.option("--workers", type=click.IntRange(min=1), default=None, help="processes; default one per core")
@@ -276,7 +295,7 @@ def main(worlds: int, first: int, duration: float, trackers: tuple[str, ...], wo
             tasks = [DriveTask(each, tracker, duration) for each in range(seed, seed + worlds - len(drives))]
             seed += len(tasks)
             (more,) = compare({tracker: tasks}, chosen_workers(workers, None), tracker).values()
-            drives += [drive for drive in more if drive.driven_m >= DRIVES_M]
+            drives += [drive for drive in more if drive is not None]
         drives = list(islice(drives, worlds))
         click.echo(
             f"Tracker {tracker}: {len(drives)} worlds with {DRIVES_M:g} m of travel in {seed - first} seeds."

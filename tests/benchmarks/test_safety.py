@@ -9,13 +9,12 @@ from benchmarks.safety import (
     KINDS,
     Drive,
     blamed,
-    drive_in,
+    drive_of,
     failures_in,
     fault_of,
     groups_of,
     measure_stop,
     summarise,
-    world_of,
 )
 from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.scores.contacts import Contact
@@ -26,6 +25,7 @@ def drive(fault="", *contacts, stopping_s=math.nan, speed_m_s=math.nan):
         seed=3,
         fault=fault,
         driven_m=2.0,
+        fastest_s=1.0,
         nearest_m=0.7,
         contacts=contacts,
         speed_m_s=speed_m_s,
@@ -83,8 +83,14 @@ def test_a_contact_while_the_robot_is_pushed_is_not_its_own():
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 45])
 def test_no_fault_makes_the_robot_touch_anything(seed):
-    found = drive_in(world_of(seed, "truth", 14.0), seed, "truth")
-    assert found.driven_m > 1.0
+    found = drive_of(seed, "truth", 14.0)
+    assert found.fault == fault_of(seed)
+    assert found.speed_m_s > 0.15
     assert not failures_in([found])
     if found.fault == "camera_lost":
-        assert found.stopping_s < 0.45
+        assert found.stopping_s < 0.31
+
+
+@pytest.mark.slow
+def test_worlds_in_which_the_robot_hardly_drives_do_not_count():
+    assert drive_of(117, "truth", 6.0) is None
