@@ -43,8 +43,6 @@ FAULTS: Final[Mapping[str, Mapping[str, Any]]] = {
 }
 """Faults of all cameras and all sonars, and of one of them, by name."""
 
-OUT: Final = Path("runs/faults.json")
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultRun:
@@ -173,7 +171,7 @@ COLUMNS: Final[Mapping[str, str]] = {
 @click.option("--fault", "names", multiple=True, type=click.Choice(list(FAULTS)), help="default: all")
 @click.option("--workers", type=click.IntRange(min=1), default=None, help="processes; default one per core")
 def main(seeds: int, tracker: str, names: tuple[str, ...], workers: int | None) -> None:
-    """Run with each fault and without; print the effect, and write it to runs/faults.json."""
+    """Run with each fault and without; print the effect, and write it to runs/faults-TRACKER.json."""
     tasks = {
         name: [FaultTask(name, scenario, seed, tracker) for scenario in SCENARIOS for seed in range(seeds)]
         for name in dict.fromkeys(("none", *(names or FAULTS)))
@@ -181,7 +179,7 @@ def main(seeds: int, tracker: str, names: tuple[str, ...], workers: int | None) 
     runs = compare(tasks, chosen_workers(workers, None), tracker)
     found = {name: summarise(own, runs["none"]) for name, own in runs.items()}
     print_table(("fault", *COLUMNS), rows_of(found, COLUMNS), width=200)
-    update_results(OUT, {tracker: found})
+    update_results(Path(f"runs/faults-{tracker}.json"), found)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -144,14 +145,14 @@ def _is_flat(image: Image) -> bool:
 
 
 def _has_pattern(image: Image) -> bool:
-    """Return whether there is so much in the middle of an image that it cannot leave within one step."""
+    """Return whether something in the middle of an image is so large that it cannot leave within one step."""
     height, width = image.shape[:2]
     edge = int(_MIDDLE * width)
     middle = image[:, edge : width - edge]
     is_apart = np.abs(middle.astype(np.int32) - int(np.median(image))) > FLAT
-    rows = np.flatnonzero(is_apart.any(axis=1))
-    tall = int(rows[-1] - rows[0]) + 1 if len(rows) else 0
-    return tall >= _TALL * height and int(is_apart.sum()) >= _WIDE * tall**2
+    _, _, stats, _ = cv2.connectedComponentsWithStats(is_apart.astype(np.uint8))
+    tall, area_px = stats[1:, cv2.CC_STAT_HEIGHT], stats[1:, cv2.CC_STAT_AREA]
+    return bool(np.any((tall >= _TALL * height) & (area_px >= _WIDE * tall**2)))
 
 
 def _describe(image: Image) -> str:

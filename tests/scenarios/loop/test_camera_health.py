@@ -24,7 +24,7 @@ def observed(sonar_m=1.0, **images):
     )
 
 
-def warm(left, width=10, height=36):
+def warm(left, width=8, height=36):
     """A thermal image of a person, with noise."""
     image = COLD.copy()
     noise = np.random.default_rng(next(SEEDS))
@@ -78,6 +78,13 @@ def test_a_cold_view_fails_with_a_black_colour_image_and_works_with_the_next_one
     black = np.zeros((60, 80, 3), np.uint8)
     assert set(health.check(observed(thermal=COLD, colour=black))) == {"thermal", "colour"}
     assert health.check(observed(thermal=COLD, colour=lit())) == {}
+
+
+def test_a_lamp_above_the_person_does_not_hide_that_the_person_cannot_vanish(health):
+    image = warm(30)
+    image[:2, 20:23] = image[58:, 50:54] = 255
+    health.check(observed(thermal=image, colour=lit()))
+    assert health.check(observed(thermal=COLD, colour=lit())) == {"thermal": "the image is black"}
 
 
 def test_a_robot_that_was_carried_may_have_a_cold_view(health):
