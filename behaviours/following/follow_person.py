@@ -219,7 +219,10 @@ def distance_error(height: float, config: FollowConfig) -> float:
 
 def _update_target(state: FollowState, percept: Percept, step_s: float, config: FollowConfig) -> FollowState:
     """Predict the followed person, identify it, and give it up after a long absence."""
-    known = state.target if step_s <= config.wait_s else None
+    known = state.target
+    # After a pause, such as a stop without images, only the track tells where the person is.
+    if known is not None and step_s > config.wait_s and all(one.id != known.id for one in percept.people):
+        known = None
     give_up_s = config.give_up_known_s if percept.knows_again else config.give_up_s
     if known is not None and percept.time_s - known.seen_s > give_up_s:
         known = None
