@@ -120,6 +120,14 @@ def test_after_a_long_gap_between_images_the_robot_starts_afresh():
     assert state.target.drift_rad_s == 0.0
 
 
+def test_after_a_stop_without_images_the_robot_follows_the_same_person_also_beside_a_taller_one():
+    state, _ = follow_frames([person(x=0.5)], [person(x=0.4)])
+    state, _ = follow(state, percept(3.0, person(x=-0.5), person(id=2, height=0.9)), CONFIG)
+    assert state.target.id == 1
+    assert state.target.bearing_rad > 0.1
+    assert state.target.drift_rad_s == 0.0
+
+
 def test_another_person_who_comes_nearer_does_not_draw_the_robot_away():
     state, _ = follow_frames([person()], [person(), person(id=2, height=0.8)])
     assert state.target.id == 1
