@@ -1,6 +1,7 @@
 """Draw the plan of a scenario: the place, warm objects, walking paths with times, and the robot's view."""
 
 import textwrap
+from io import BytesIO
 from pathlib import Path
 from typing import Final
 
@@ -28,7 +29,7 @@ from peopleboy.scenarios.drawing.plan_sheet import (
     sections,
 )
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.run_folder.atomic_output import writing_to
+from peopleboy.scenarios.run_folder.atomic_output import write_aside, writing_to
 from peopleboy.sim.world_config import WorldConfig
 
 _PERSON, _ROBOT = "#1f6fb4", "#c0392b"
@@ -112,11 +113,12 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
         try:
             if not path.suffix:  # matplotlib would append one
                 raise ValueError("it has no suffix")
-            figure.savefig(path, dpi=_DPI)
+            figure.savefig(picture := BytesIO(), dpi=_DPI, format=path.suffix[1:])
         except ValueError as error:
             raise BadInput(
                 f"{path}: cannot write the plan: {error}; give a path that ends in .png"
             ) from error
+        write_aside(path, picture.getvalue())
 
 
 def _draw_section(axes: Axes, scenario: Scenario, config: WorldConfig) -> None:

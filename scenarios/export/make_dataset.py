@@ -23,7 +23,7 @@ from peopleboy.scenarios.export.splits import (
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.random_worlds.drawn_values import drawn_values, histograms
-from peopleboy.scenarios.random_worlds.random_world import random_scenario
+from peopleboy.scenarios.random_worlds.random_world import world_name
 from peopleboy.scenarios.run_folder.atomic_output import check_named, writing_to
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.task import Workers
@@ -34,9 +34,9 @@ from peopleboy.sim.physics.physics_engine import check_physics
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Member:
-    """A run of a set: its scenario, its seed, and the name of its folder."""
+    """A run of a set: its scenario (None: the random world of its seed), its seed, and its folder's name."""
 
-    scenario: Scenario
+    scenario: Scenario | None
     seed: int
     name: str
 
@@ -82,9 +82,8 @@ def of_scenarios(scenarios: Sequence[str], seeds: range) -> SetContents:
 
 def of_worlds(seeds: range) -> SetContents:
     """Return the contents of a set of random worlds, one for each seed."""
-    worlds = [random_scenario(seed) for seed in seeds]
     return SetContents(
-        members=tuple(Member(world, seed, world.name) for world, seed in zip(worlds, seeds, strict=True)),
+        members=tuple(Member(None, seed, world_name(seed)) for seed in seeds),
         asked=("--random-worlds",),
         about={"random_worlds": True} | _about(seeds),
         lacking=lacking_splits(seeds),
@@ -192,9 +191,9 @@ def render_set(
         TasksFailed: some runs failed.
     """
     members = contents.members
-    for member in members:
-        check_physics(member.scenario.spec.physics)
-    _claim(folder)
+    for scenario in {member.scenario for member in members if member.scenario is not None}:
+        check_physics(scenario.spec.physics)
+    _check(folder)
     tasks = [
         RunTask(
             member.scenario,
@@ -205,7 +204,7 @@ def render_set(
         for member in members
     ]
     waiting = unfinished(tasks)
-    _reopen(folder)
+    _claim(folder)
     runs = tuple(task.options.out for task in tasks)
     numbers = [member.seed for member in members]
     _write_splits(folder, [run.name for run in runs], numbers)
@@ -214,13 +213,16 @@ def render_set(
         folder=folder,
         runs=runs,
         statistics=_statistics(runs, numbers),
-        checks=tuple(check_set(folder, runs, members[0].scenario, tasks[0].options)),
+        checks=tuple(check_set(folder, runs, tasks[0].played, tasks[0].options)),
         size_mb=sum(path.stat().st_size for run in runs for path in run.rglob("*") if path.is_file()) / 1e6,
         lacking=contents.lacking,
     )
     about = {**contents.about, "images": frames, "tracker": tracker, "versions": versions()}
-    drawn = {m.name: drawn_values(m.scenario.resolved(m.seed)) for m in members} if contents.is_random else {}
-    if drawn:
+    scenarios = list(dict.fromkeys(task.played for task in tasks))
+    drawn = {}
+    if contents.is_random:
+        worlds = zip(scenarios, numbers, strict=True)
+        drawn = {world.name: drawn_values(world.resolved(seed)) for world, seed in worlds}
         (folder / DRAWN).write_text(json.dumps(drawn, indent=1) + "\n", encoding="utf-8")
     content = about | {
         "asked": contents.asked,
@@ -228,27 +230,26 @@ def render_set(
         "lacking": done.lacking,
         "drawn": histograms(list(drawn.values())),
     }
-    scenarios = list(dict.fromkeys(member.scenario for member in members))
     write_datasheet(folder / "README.md", done.statistics, done.checks, content, scenarios)
     _write_about(done, about)
     return done
 
 
-def _claim(folder: Path) -> None:
-    """Create the folder.
+def _check(folder: Path) -> None:
+    """Refuse a folder that contains something other than a set.
 
     Raises:
-        BadInput: the folder contains something other than a set.
+        BadInput: it does.
     """
     check_named(folder)
     if folder.exists() and (not folder.is_dir() or (any(folder.iterdir()) and not is_set(folder))):
         raise BadInput(f"{folder}: contains something other than a rendered set; give another --out")
+
+
+def _claim(folder: Path) -> None:
+    """Create the folder, and remove the files that mark a set as finished."""
     with writing_to(folder):
         (folder / "splits").mkdir(parents=True, exist_ok=True)
-
-
-def _reopen(folder: Path) -> None:
-    """Remove the files that mark the set as finished."""
     for name in ("README.md", ABOUT, DRAWN):
         (folder / name).unlink(missing_ok=True)
 

@@ -66,7 +66,7 @@ class RobotSpec:
     ] = "stand"
     commands: Annotated[
         tuple[CommandSpec, ...],
-        Field(strict=False, description="commands of a scripted robot, in order of time"),
+        Field(strict=False, max_length=10000, description="commands of a scripted robot, in order of time"),
     ] = ()
     keep_height: Annotated[
         float | None,

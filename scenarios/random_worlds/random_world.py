@@ -170,6 +170,11 @@ LASTS_S: Final = 8.0
 _TRIES: Final = 3
 
 
+def world_name(seed: int) -> str:
+    """Return the name of the world of a seed."""
+    return f"world_{seed}"
+
+
 def random_world(seed: int, duration_s: float = LASTS_S, distribution: Distribution | None = None) -> Data:
     """Sample the data of a random world, which depend only on seed, duration and distribution.
 
@@ -182,7 +187,7 @@ def random_world(seed: int, duration_s: float = LASTS_S, distribution: Distribut
     """
     draws = Draws(stream(seed, "random_world"), distribution)
     scene: Data = {
-        "name": f"world_{seed}",
+        "name": world_name(seed),
         "description": "A world drawn at random.",
         "duration_s": duration_s,
         "detail": "full",
@@ -210,7 +215,9 @@ def random_scenario(
     seed: int, duration_s: float = LASTS_S, distribution: Distribution | None = None
 ) -> Scenario:
     """Sample a world, and return it as a scenario."""
-    return parse_scenario(random_world(seed, duration_s, distribution), source=f"world_{seed}", folder=Path())
+    return parse_scenario(
+        random_world(seed, duration_s, distribution), source=world_name(seed), folder=Path()
+    )
 
 
 def _with_door(draws: Draws, scene: Data) -> Data:

@@ -237,13 +237,16 @@ def open_whole_runs(folders: Sequence[Path], *, are_named_apart: bool = True) ->
 
 
 def check_there(folder: Path) -> None:
-    """Refuse a folder that does not exist.
+    """Refuse a folder that does not exist, or has pipes or devices, as reading them may never end.
 
     Raises:
-        BadInput: the folder does not exist.
+        BadInput: it does not exist, or has one.
     """
     if not folder.is_dir():
         raise BadInput(f"{folder}: folder not found; give the folder of a finished run")
+    for path in (*folder.iterdir(), *folder.glob("truth/*"), *folder.glob("tracks/*")):
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            raise BadInput(f"{path}: is a pipe or a device; remove it, or run the scenario again")
 
 
 def runs_in(folder: Path) -> list[Path]:

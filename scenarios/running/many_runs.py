@@ -12,7 +12,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.suite import load_suite, runs_of
 from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
-from peopleboy.scenarios.random_worlds.random_world import random_scenario
+from peopleboy.scenarios.random_worlds.random_world import LASTS_S, random_scenario, world_name
 from peopleboy.scenarios.run_folder.atomic_output import check_out
 from peopleboy.scenarios.running.engine.task import ReportProgress, Task, Workers
 from peopleboy.scenarios.running.engine.work_through import work_through
@@ -26,10 +26,21 @@ _ARRIVAL_S = 30.0  # [s] timeout for a run of another machine to appear in a sha
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunTask:
-    """A scenario with the options to run it with."""
+    """A scenario with the options to run it with.
 
-    scenario: Scenario
+    Attributes:
+        scenario: the scenario; None for the random world of the run's seed, which is sampled when it is
+            needed, as there may be 100 000 of them.
+        options: options of the run.
+    """
+
+    scenario: Scenario | None
     options: RunOptions
+
+    @property
+    def played(self) -> Scenario:
+        """The scenario of the run."""
+        return random_scenario(self.options.seed) if self.scenario is None else self.scenario
 
     @property
     def name(self) -> str:
@@ -39,13 +50,23 @@ class RunTask:
     @property
     def size(self) -> int:
         """Frames."""
-        return round(self.scenario.duration_s * _RATE_HZ)
+        return round((LASTS_S if self.scenario is None else self.scenario.duration_s) * _RATE_HZ)
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the run is complete.
+
+        Raises:
+            BadInput: the folder holds another complete run, or a damaged one.
+        """
+        is_there = (self.options.out / "run.json").exists()
+        return is_there and is_finished(self.played, self.options)
 
     def __call__(self, report_progress: ReportProgress) -> None:
         """Run the scenario unless the run is complete; an unfinished run is replaced."""
-        if not is_finished(self.scenario, self.options):
+        if not self.is_finished:
             options = replace(self.options, overwrite=True)
-            run(self.scenario, options, lambda tick, _frames: report_progress(tick.frame))
+            run(self.played, options, lambda tick, _frames: report_progress(tick.frame))
 
 
 _LOG = logging.getLogger(__name__)
@@ -58,8 +79,10 @@ def unfinished(tasks: Sequence[RunTask]) -> list[RunTask]:
         BadInput: a run is invalid, or its folder contains something else.
     """
     for task in tasks:
-        tracker_cameras(tracker_name(task.scenario, task.options))  # raises for an unknown name
-    waiting = [task for task in tasks if not is_finished(task.scenario, task.options)]
+        if task.scenario is not None or task is tasks[0]:  # random worlds are refused alike
+            scenario = task.options.applied_to(task.played)
+            tracker_cameras(tracker_name(scenario, task.options))
+    waiting = [task for task in tasks if not task.is_finished]
     _LOG.info("%d of %d runs are complete already", len(tasks) - len(waiting), len(tasks))
     for task in waiting:
         check_out(task.options.out, "run", overwrite=True)
@@ -127,17 +150,15 @@ def run_suite(name: str, options: RunOptions, workers: Workers) -> list[Path]:
         TasksFailed: some runs failed.
     """
     runs = runs_of(load_suite(name))
-    return _run_all([(one.scenario, one.seed, one.name) for one in runs], options, workers, name)
+    return _run_all(((one.scenario, one.seed, one.name) for one in runs), options, workers, name)
 
 
 def _run_all(
-    runs: Iterable[tuple[Scenario, int, str]], options: RunOptions, workers: Workers, title: str
+    runs: Iterable[tuple[Scenario | None, int, str]], options: RunOptions, workers: Workers, title: str
 ) -> list[Path]:
     """Run scenarios with seeds into named folders, without recordings; return the folders."""
     tasks = [
-        RunTask(
-            options.applied_to(scenario), replace(options, seed=seed, out=options.out / name, record=False)
-        )
+        RunTask(scenario, replace(options, seed=seed, out=options.out / name, record=False))
         for scenario, seed, name in runs
     ]
     play(unfinished(tasks), workers, title)
@@ -177,6 +198,4 @@ def sweep_worlds(seeds: Iterable[int], options: RunOptions, workers: Workers) ->
     Returns:
         The folders out/world_SEED, in the order of the seeds.
     """
-    worlds = ((random_scenario(seed), seed) for seed in seeds)
-    runs = ((world, seed, world.name) for world, seed in worlds)
-    return _run_all(runs, options, workers, "random worlds")
+    return _run_all(((None, seed, world_name(seed)) for seed in seeds), options, workers, "random worlds")
