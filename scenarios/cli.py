@@ -37,7 +37,9 @@ _ADVICE: Final = {
     errno.ENOENT: "a file or folder was removed in the meantime; run the command again",
     errno.ENAMETOOLONG: "give a shorter name",
 }
-"""What to do about errors of the system that are no faults of the program."""
+"""What to do about errors of the system."""
+
+_ELSE: Final = "check the path, its rights and its disk"
 
 _LONGEST: Final = 500
 SECTIONS: Final[Mapping[str, tuple[click.Command, ...]]] = {
@@ -108,9 +110,10 @@ def main(arguments: Sequence[str] | None = None) -> Any:
         click.echo(f"peopleboy: {error}", err=True)
         code = FAILED
     except OSError as error:
-        if error.errno not in _ADVICE:
+        if error.errno is None:  # raised by a library, not by the system
             raise
-        click.echo(f"peopleboy: {_shorten(str(error))}; {_ADVICE[error.errno]}", err=True)
+        advice = _ADVICE.get(error.errno, _ELSE)
+        click.echo(f"peopleboy: {_shorten(str(error))}; {advice}", err=True)
         code = BAD_INPUT if error.errno == errno.ENAMETOOLONG else FAILED
     sys.exit(code if isinstance(code, int) else 0)
 

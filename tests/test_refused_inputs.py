@@ -106,7 +106,7 @@ def test_a_million_million_seeds_are_refused(capsys: pytest.CaptureFixture[str])
     assert "from 1 to 100000" in refusal(capsys, "render", "crossing_2", "--seeds", 10**12)
 
 
-@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EMFILE, errno.ENOENT])
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EMFILE, errno.ENOENT, errno.EFBIG])
 def test_a_fault_of_the_system_is_one_line(
     number: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

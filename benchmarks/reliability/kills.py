@@ -1,8 +1,9 @@
 """Kill commands at random moments: `python -m benchmarks.reliability.kills`.
 
 Each command is run once to its end, then killed by SIGKILL after a random share of that time. Every folder of
-a run that it leaves must say what it is and open, as far as it has whole frames; the same command must then
-finish, with the bytes of the run that was never killed.
+a run that it leaves must say what it is and open, as far as it has whole frames, and have lost at most the
+frame in flight. The same command must then finish, with the bytes of the run that was
+never killed.
 """
 
 import os
@@ -12,29 +13,36 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
 import click
 import numpy as np
-from rich.console import Console
-from rich.table import Table
 
 from benchmarks import call
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.finished_run import open_run
+from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
 
 SCENE: Final = "single_stationary"
-COMMANDS: Final = {
+COMMANDS: Final[dict[str, tuple[str, ...]]] = {
     "run": ("run", SCENE, "--tracker", "truth", "--no-recording", "--overwrite"),
     "run --frames": ("run", SCENE, "--tracker", "truth", "--no-recording", "--overwrite", "--frames"),
     "sweep": ("sweep", SCENE, "--tracker", "truth", "--seeds", "2", "--workers", "2"),
     "render": ("render", SCENE, "--seeds", "2", "--workers", "2"),
+    "track": ("track", "{run}/thermal", "--overwrite"),
+    "export": ("export", "{run}", "--format", "coco", "--overwrite"),
+    "reproduce": ("reproduce", "figure-4.4", "--quick", "--workers", "1"),
+    "train": ("train", "distance", SCENE, "--seeds", "2", "--epochs", "5", "--workers", "1"),
 }
+"""Commands by name; {run} is a run with images that is made before."""
+
+_HEAD: Final = "command       kills  cut-off runs opened  most frames lost  faults"
+_ROW: Final = "{:12}  {:5}  {:19}  {:16}  {:6}"
 _BEFORE_FIRST: Final = "before its first frame"
 _VARY: Final = (".rrd", ".log", ".part")  # suffixes of files that are not compared
+_TIMED: Final = ("README.md", "run.json", "index.html", "units.jsonl")  # have times of the clock
 
 
 @dataclass(slots=True)
@@ -44,12 +52,16 @@ class KillResult:
     Attributes:
         command: the command.
         kills: how often it was killed before it had ended.
+        left: runs that were cut off, and opened afterwards.
+        lost: most frames that one of them had lost.
         faults: what was wrong afterwards.
     """
 
     command: str
-    kills: int
-    faults: list[str]
+    kills: int = 0
+    left: int = 0
+    lost: int = 0
+    faults: list[str] = field(default_factory=list)
 
 
 def start(words: Sequence[str], out: Path) -> "subprocess.Popen[bytes]":
@@ -60,24 +72,41 @@ def start(words: Sequence[str], out: Path) -> "subprocess.Popen[bytes]":
     )
 
 
-def check_left(out: Path) -> list[str]:
-    """Return what is wrong with the folders of runs that a killed command left."""
-    faults = []
+def last_frame(folder: Path) -> int:
+    """Return the last frame that a killed run began, from its text files; 0 for none."""
+    lines = [
+        line
+        for path in (*folder.glob("truth/*gt.txt"), folder / "tracks.txt")
+        if path.is_file()
+        for line in path.read_text(encoding="utf-8").split("\n")[:-1]
+    ]
+    return max((int(line.partition(",")[0]) for line in lines), default=0)
+
+
+def check_left(out: Path, result: KillResult) -> None:
+    """Check the folders of runs that a killed command left."""
     for about in out.glob("**/run.json"):
+        begun = last_frame(about.parent)
         try:
+            said = read_run(about.parent)
+            if "footage" in said:
+                continue
             run = open_run(about.parent)
             run.files()
             _ = run.events
         except BadInput as error:
             if _BEFORE_FIRST not in str(error):
-                faults.append(str(error))
-    return faults
+                result.faults.append(str(error))
+            continue
+        if run.incomplete:
+            result.left += 1
+            result.lost = max(result.lost, begun - run.frames)
 
 
 def differing(whole: Path, resumed: Path) -> list[str]:
     """Return the files of a folder that are missing in another one, or differ there."""
     names = [path.relative_to(whole) for path in whole.rglob("*") if path.is_file()]
-    compared = [name for name in names if name.suffix not in _VARY and name.name != "README.md"]
+    compared = [name for name in names if name.suffix not in _VARY and name.name not in _TIMED]
     return [
         f"{name} differs"
         for name in compared
@@ -87,13 +116,16 @@ def differing(whole: Path, resumed: Path) -> list[str]:
 
 def kill_often(name: str, kills: int, folder: Path, rng: np.random.Generator) -> KillResult:
     """Kill a command so often, each time check what it left, and run it to its end."""
-    words, whole = COMMANDS[name], folder / "whole" / "out"
+    run, whole, result = folder / "run", folder / "whole" / "out", KillResult(name)
+    words = [word.format(run=run) for word in COMMANDS[name]]
+    if words != list(COMMANDS[name]) and start(COMMANDS["run --frames"], run).wait() != 0:
+        raise click.ClickException("the run with images failed")
     whole.parent.mkdir(parents=True)
     began_s = time.monotonic()
     if start(words, whole).wait() != 0:
-        return KillResult(name, 0, ["did not run to its end"])
+        result.faults.append("did not run to its end")
+        return result
     lasts_s = time.monotonic() - began_s
-    result = KillResult(name, 0, [])
     for number in range(kills):
         out = folder / str(number) / "out"
         out.parent.mkdir()
@@ -103,30 +135,31 @@ def kill_often(name: str, kills: int, folder: Path, rng: np.random.Generator) ->
             os.killpg(process.pid, signal.SIGKILL)
             result.kills += 1
         process.wait()
-        result.faults += check_left(out)
+        check_left(out, result)
         if start(words, out).wait() != 0:
             result.faults.append(f"kill {number + 1}: did not resume")
         else:
             result.faults += differing(whole, out)
+        left = [path.name for path in out.parent.iterdir() if path != out]
+        result.faults += [f"kill {number + 1}: left {name}" for name in left]
         shutil.rmtree(out.parent)
     return result
 
 
 @click.command()
-@click.option("--kills", default=13, show_default=True, help="Kills of each command.")
+@click.option("--kills", default=8, show_default=True, help="Kills of each command.")
 @click.option("--command", "names", type=click.Choice(list(COMMANDS)), multiple=True, help="Only these.")
 @click.option("--seed", default=0, show_default=True, help="Seed of the moments.")
 def main(kills: int, names: tuple[str, ...], seed: int) -> None:
     """Kill commands at random moments, check what they leave, and resume them."""
     rng = np.random.default_rng(seed)
-    table = Table("command", "kills", "faults")
     faults = []
+    click.echo(_HEAD)
     for name in names or COMMANDS:
         with TemporaryDirectory() as folder:
             result = kill_often(name, kills, Path(folder), rng)
-        table.add_row(name, str(result.kills), str(len(result.faults)))
+        click.echo(_ROW.format(name, result.kills, result.left, result.lost, len(result.faults)))
         faults += [f"{name}: {fault}" for fault in result.faults]
-    Console().print(table)
     for fault in faults[:20]:
         click.echo(fault)
     sys.exit(1 if faults else 0)

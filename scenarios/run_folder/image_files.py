@@ -59,8 +59,7 @@ def write_png(path: Path, image: Stored) -> None:
     try:
         write_aside(path, encoded.tobytes())
     except OSError as error:
-        reason = error.strerror or error
-        raise BadInput(f"{path}: cannot write this image: {reason}; is the disk full?") from error
+        raise BadInput(f"{path}: cannot write this image: {error.strerror or error}") from error
 
 
 def millimetres(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:

@@ -276,12 +276,12 @@ LOCAL: Final = LocalFileSystem()
 """Without it, pyarrow takes a relative path with a colon for a URI."""
 
 _BLOCK_ROWS: Final = 512
-_GROUP_ROWS: Final = 32768
+_GROUP_ROWS: Final = 8192
 _LOG: Final = "rows.log"
 
 
 class TableFile:
-    """Write a parquet file in groups of 32768 rows, so that memory does not grow with its length.
+    """Write a parquet file in groups of 8192 rows, so that memory does not grow with its length.
 
     It is written aside, and takes its name with `close`. Without rows, the table is empty and has the same
     columns.

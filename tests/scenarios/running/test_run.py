@@ -163,7 +163,7 @@ def test_a_run_whose_images_cannot_be_written_fails_in_one_line(
 
     monkeypatch.setattr(Path, "write_bytes", write_until_full)
     ticks: list[int] = []
-    with refused("thermal16/000003.png", "is the disk full?"):
+    with refused("thermal16/000003.png", "cannot write this image"):
         run(
             parse_scenario(scene(), source="tiny", folder=tmp_path),
             RunOptions(seed=0, out=tmp_path / "run", frames=True, record=False),
@@ -172,7 +172,7 @@ def test_a_run_whose_images_cannot_be_written_fails_in_one_line(
     assert len(ticks) < 30  # frames of the scenario
     about = json.loads((tmp_path / "run" / "run.json").read_text())
     assert about["status"] == "failed"
-    assert "is the disk full?" in about["error"]["message"]
+    assert "cannot write this image" in about["error"]["message"]
 
 
 def test_an_interrupted_run_says_so_and_stays_readable(tmp_path: Path) -> None:
