@@ -34,7 +34,7 @@ COMMANDS: Final[dict[str, tuple[str, ...]]] = {
     "track": ("track", "{run}/thermal", "--overwrite"),
     "export": ("export", "{run}", "--format", "coco", "--overwrite"),
     "reproduce": ("reproduce", "figure-4.4", "--quick", "--workers", "1"),
-    "train": ("train", "distance", SCENE, "--seeds", "2", "--epochs", "5", "--workers", "1"),
+    "train": ("train", "distance", "room_long", "--seeds", "2", "--epochs", "5", "--workers", "1"),
 }
 """Commands by name; {run} is a run with images that is made before."""
 
