@@ -68,6 +68,9 @@ def attempt(task: Task[Any], report_progress: ReportProgress) -> Any:
     except OwnCodeFailed as error:
         return Failure(task.name, str(error))
     except Exception as error:
+        # A signal that arrives within a kernel of numba becomes the cause of a SystemError.
+        if isinstance(error.__cause__, SystemExit | KeyboardInterrupt):
+            raise error.__cause__ from None
         return Failure(task.name, in_one_line(error))
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from peopleboy.scenarios.running.engine.store import Store
-from peopleboy.scenarios.running.engine.task import TasksFailed, Workers, chosen_workers
+from peopleboy.scenarios.running.engine.task import TasksFailed, Workers, attempt, chosen_workers
 from peopleboy.scenarios.running.engine.work_through import work_through
 from tests.helpers.calls.processes import start
 from tests.helpers.calls.refused import refused
@@ -107,6 +107,18 @@ def test_who_is_ended_midway_takes_its_workers_along_and_goes_on_from_there(
     assert 3 <= len(kept) < 12
     work(toys(tmp_path), kept, Workers(1))
     assert squares(Store(store.path, "toys")) == ALL
+
+
+def test_a_signal_within_a_kernel_ends_the_process_and_is_no_failure_of_the_task() -> None:
+    def work_in_kernel(_: object) -> None:
+        try:
+            raise SystemExit(143)
+        except SystemExit as leaving:
+            raise SystemError("a kernel returned a result with an exception set") from leaving
+
+    with pytest.raises(SystemExit) as caught:
+        attempt(work_in_kernel, lambda _: None)  # type: ignore[arg-type]
+    assert caught.value.code == 143
 
 
 def test_the_bar_tells_done_left_and_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
