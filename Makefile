@@ -27,7 +27,7 @@ test-pages: $(READY)
 
 # Random inputs for everything that reads what users write: about 20 000.
 fuzz: $(READY)
-	FUZZ_EXAMPLES=4000 $(BIN)/python -m pytest -n 2 tests/test_fuzz.py tests/test_refused_inputs.py
+	FUZZ_EXAMPLES=2400 $(BIN)/python -m pytest -n 2 tests/test_fuzz.py tests/test_refused_inputs.py
 
 # Kill commands at random moments, check what they leave, and resume them.
 kill-tests: $(READY)
@@ -115,7 +115,7 @@ $(INSTALLED): pyproject.toml constraints.txt
 	  fi; \
 	fi
 	# uv installs all the rest in a fifth of pip's time.
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --upgrade pip setuptools uv
 	$(PIP) --editable '.[viewer]'
 	@touch $(INSTALLED)
 

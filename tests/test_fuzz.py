@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 from collections.abc import Iterator
+from contextlib import redirect_stderr, redirect_stdout
 from datetime import timedelta
 from typing import Any
 
+import cv2
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -20,6 +24,10 @@ from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.sim.physics.urdf import read_urdf
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
+from peopleboy.tracker.footage.footage_truth import load_truth
+from peopleboy.tracker.footage.read_picture import read_pages, read_picture
+from peopleboy.tracker.networks.weights_archive import ArraySpec, WeightsArchive
+from tests.helpers.calls.command_line import run_cli
 
 fuzzed = settings(
     max_examples=int(os.environ.get("FUZZ_EXAMPLES", "30")),
@@ -47,6 +55,15 @@ def places(data: Any, at: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
         yield (*at, step)
         if isinstance(value, dict | list):
             yield from places(value, (*at, step))
+
+
+def mutated(data: st.DataObject, content: bytes) -> bytes:
+    """Change, cut out and insert bytes."""
+    changed = bytearray(content)
+    for _ in range(data.draw(st.integers(0, 6))):
+        at = data.draw(st.integers(0, len(changed)))
+        changed[at : at + data.draw(st.sampled_from([0, 1, 1, 4, 400]))] = data.draw(st.binary(max_size=4))
+    return bytes(changed)
 
 
 def check_refusal(error: BadInput) -> None:
@@ -102,6 +119,75 @@ def test_urdf(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> 
         read_urdf(path)
     except BadInput as error:
         check_refusal(error)
+
+
+@fuzzed
+@given(st.data())
+def test_boxes_of_one_person(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
+    path = tmp_path_factory.getbasetemp() / "groundtruth.txt"
+    number = st.one_of(st.integers(-2, 30), st.floats(), st.sampled_from(["", "x", "1e400", "-0", "\0"]))
+    lines = data.draw(st.lists(st.lists(number, min_size=3, max_size=9), max_size=4))
+    separator = data.draw(st.sampled_from([",", " ", "\t", ";"]))
+    path.write_text("\n".join(separator.join(map(str, line)) for line in lines))
+    try:
+        load_truth(path, data.draw(st.one_of(st.none(), st.integers(0, 5))))
+    except BadInput as error:
+        check_refusal(error)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")  # of Pillow, about damaged metadata
+@fuzzed
+@given(st.data(), st.sampled_from([".png", ".jpg", ".tiff", ".bmp"]), st.sampled_from([np.uint8, np.uint16]))
+def test_images(
+    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject, suffix: str, depth: type[np.generic]
+) -> None:
+    path = tmp_path_factory.getbasetemp() / f"picture{suffix}"
+    grey = np.arange(48).reshape(6, 8).astype(depth if suffix in (".png", ".tiff") else np.uint8)
+    path.write_bytes(mutated(data, cv2.imencode(suffix, grey)[1].tobytes()))
+    try:
+        list(read_pages(path, [])) if suffix == ".tiff" else read_picture(path, [])
+    except BadInput as error:
+        check_refusal(error)
+
+
+@fuzzed
+@given(st.data())
+def test_weights(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
+    path = tmp_path_factory.getbasetemp() / "weights.npz"
+    WeightsArchive({"a": np.zeros((2, 3), np.float32)}, {"x": "1"}).save(path)
+    path.write_bytes(mutated(data, path.read_bytes()))
+    try:
+        WeightsArchive.load(path, "places", {"a": ArraySpec((2, 3))})
+    except BadInput as error:
+        check_refusal(error)
+
+
+WORDS = ["show", "run", "evaluate", "report", "export", "view", "sweep", "render", "track", "--seed", "--out"]
+NOWHERE = [
+    "nan",
+    "-1",
+    "",
+    "x.yaml",
+    "a:b",
+    "--tracker",
+    "--seeds",
+    "--",
+    "-",
+    "--json",
+    "é",
+    "\udcff",
+    "a" * 300,
+]
+
+
+@fuzzed
+@given(st.lists(st.sampled_from([*WORDS, *NOWHERE]), min_size=1, max_size=6))
+def test_command_lines(words: list[str]) -> None:
+    # None of them names a scenario, so that nothing is run.
+    errors = io.StringIO()
+    with redirect_stderr(errors), redirect_stdout(io.StringIO()):
+        assert run_cli(*words) in (0, 2)
+    assert "Traceback" not in errors.getvalue()
 
 
 @fuzzed
