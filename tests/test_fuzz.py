@@ -31,7 +31,7 @@ from tests.helpers.calls.command_line import run_cli
 
 fuzzed = settings(
     max_examples=int(os.environ.get("FUZZ_EXAMPLES", "30")),
-    deadline=timedelta(seconds=5),
+    deadline=timedelta(seconds=60),
     derandomize="FUZZ_EXAMPLES" not in os.environ,
     suppress_health_check=list(HealthCheck),
     database=None,

@@ -1,9 +1,8 @@
 """Kill commands at random moments: `python -m benchmarks.reliability.kills`.
 
-Each command is run once to its end, then killed by SIGKILL after a random share of that time. Every folder of
-a run that it leaves must say what it is and open, as far as it has whole frames, and have lost at most the
-frame in flight. The same command must then finish, with the bytes of the run that was
-never killed.
+Each command is run once to its end, then killed by SIGKILL after a random share of its processor time. Every
+folder of a run that it leaves must say what it is and open, as far as it has whole frames, and have lost at
+most the frame in flight. The same command must then finish, with the bytes of the run that was never killed.
 """
 
 import os
@@ -13,6 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -40,6 +40,7 @@ COMMANDS: Final[dict[str, tuple[str, ...]]] = {
 
 _HEAD: Final = "command       kills  cut-off runs opened  most frames lost  faults"
 _ROW: Final = "{:12}  {:5}  {:19}  {:16}  {:6}"
+_STEP_S: Final = 0.05
 _BEFORE_FIRST: Final = "before its first frame"
 _VARY: Final = (".rrd", ".log", ".part")  # suffixes of files that are not compared
 _TIMED: Final = ("README.md", "run.json", "index.html", "units.jsonl")  # have times of the clock
@@ -70,6 +71,16 @@ def start(words: Sequence[str], out: Path) -> "subprocess.Popen[bytes]":
     return subprocess.Popen(
         program, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
     )
+
+
+def spent_s(group: int) -> float:
+    """Return the processor time [s] of a group of processes, which other load does not change."""
+    total = 0
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            words = path.read_text(encoding="utf-8").rpartition(")")[2].split()
+            total += sum(map(int, words[11:15])) if int(words[2]) == group else 0
+    return total / os.sysconf("SC_CLK_TCK")
 
 
 def last_frame(folder: Path) -> int:
@@ -121,16 +132,19 @@ def kill_often(name: str, kills: int, folder: Path, rng: np.random.Generator) ->
     if words != list(COMMANDS[name]) and start(COMMANDS["run --frames"], run).wait() != 0:
         raise click.ClickException("the run with images failed")
     whole.parent.mkdir(parents=True)
-    began_s = time.monotonic()
-    if start(words, whole).wait() != 0:
+    process, takes_s = start(words, whole), 0.0
+    while process.poll() is None:
+        takes_s = max(takes_s, spent_s(process.pid))
+        time.sleep(_STEP_S)
+    if process.returncode != 0:
         result.faults.append("did not run to its end")
         return result
-    lasts_s = time.monotonic() - began_s
     for number in range(kills):
         out = folder / str(number) / "out"
         out.parent.mkdir()
-        process = start(words, out)
-        time.sleep(rng.uniform(0.2, 1.0) * lasts_s)
+        process, until_s = start(words, out), rng.uniform(0.2, 1.0) * takes_s
+        while process.poll() is None and spent_s(process.pid) < until_s:
+            time.sleep(_STEP_S)
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
             result.kills += 1
