@@ -15,11 +15,10 @@ if TYPE_CHECKING:
     from peopleboy.geometry.camera_calibration import Calibration
     from peopleboy.tracker.contour.contour_tracker import ContourTracker
     from peopleboy.tracker.frame import Frame
-    from peopleboy.tracker.fusion.fused_tracker import FusedTracker
-    from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
     from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
     from peopleboy.tracker.track import Box, Track
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
 
 @runtime_checkable
@@ -95,13 +94,6 @@ def _contour_tracker(name: str, rng: "np.random.Generator") -> "ContourTracker":
     return ContourTracker(VARIANTS[name], rng)
 
 
-def _panoramic_tracker() -> "PanoramicTracker":
-    from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-    from peopleboy.tracker.panoramic.people.place_model import PlaceModel
-
-    return PanoramicTracker(PlaceModel.load())
-
-
 def _rgbd_tracker(config: "RgbdConfig", rng: "np.random.Generator") -> "RgbdTracker":
     from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
     from peopleboy.tracker.rgbd.window_model import shipped_windows
@@ -109,18 +101,15 @@ def _rgbd_tracker(config: "RgbdConfig", rng: "np.random.Generator") -> "RgbdTrac
     return RgbdTracker(config, shipped_windows(sees_depth=config.sees_depth), rng)
 
 
-def _fused_tracker(rng: "np.random.Generator") -> "FusedTracker":
-    from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
-    from peopleboy.tracker.fusion.fusion_config import FusionConfig
-    from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
-    from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
-    from peopleboy.tracker.rgbd.window_model import shipped_windows
-    from peopleboy.tracker.sensors.depth_visibility import is_warm
+def _fused_tracker() -> "PeopleTracker":
+    from peopleboy.tracker.sensors.depth import DepthSensor
+    from peopleboy.tracker.sensors.panorama import PanoramaSensor
+    from peopleboy.tracker.sensors.thermal import ThermalSensor
+    from peopleboy.tracker.tracking.config import FUSED
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
-    thermal_rng, depth_rng = rng.spawn(2)
-    thermal = _contour_tracker(CONTOUR_TRACKER, thermal_rng)
-    rgbd = RgbdTracker(RgbdConfig(), shipped_windows(sees_depth=True), depth_rng, is_warm)
-    return FusedTracker(ThermalDepthTracker(thermal, rgbd, FusionConfig()), _panoramic_tracker())
+    ahead = (ThermalSensor(FUSED), DepthSensor(tracker=FUSED))
+    return PeopleTracker(ahead, FUSED, optional=(PanoramaSensor(tracker=FUSED),))
 
 
 @TRACKERS.register(
@@ -214,23 +203,30 @@ def _panoramic_paper(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     "panoramic",
     scope="the 2003 paper, with extensions",
     summary="Tracks several people around a stationary or moving robot, with the panoramic camera only. "
-    "Uses learned foreground segmentation, learned floor positions with covariances, and colour "
-    "descriptors by height.",
+    "Uses learned foreground segmentation and learned floor positions with covariances, in one Kalman "
+    "filter for each person.",
 )
 def _panoramic(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
-    return _panoramic_tracker()
+    from peopleboy.tracker.sensors.panorama import PanoramaSensor
+    from peopleboy.tracker.tracking.config import PANORAMIC
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
+
+    return PeopleTracker((PanoramaSensor(tracker=PANORAMIC),), PANORAMIC)
 
 
 @TRACKERS.register(
     "handover",
     scope="thesis, section 8.2",
-    summary="Runs `contour` in the thermal image and `panoramic` in 360 degrees, with handover between "
-    "them. A person keeps the same id from the thermal image to the panorama and back.",
+    summary="Detects people in the thermal image and in the panorama, in one Kalman filter for each person. "
+    "A person keeps the same id from the thermal image to the panorama and back.",
 )
-def _handover(rng: "np.random.Generator") -> Tracker:
-    from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
+def _handover(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
+    from peopleboy.tracker.sensors.panorama import PanoramaSensor
+    from peopleboy.tracker.sensors.thermal import ThermalSensor
+    from peopleboy.tracker.tracking.config import FUSED
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
-    return HandoverTracker(_contour_tracker(CONTOUR_TRACKER, rng), _panoramic_tracker())
+    return PeopleTracker((ThermalSensor(FUSED), PanoramaSensor(tracker=FUSED)), FUSED)
 
 
 @TRACKERS.register(
@@ -259,29 +255,13 @@ def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
 
 @TRACKERS.register(
     "fused",
-    scope="both theses, with extensions",
-    summary="Fuses `contour` and `rgbd`, and `panoramic` if the robot has that camera. People are "
-    "detected in thermal images, located by depth, and identified by colour. Works in the dark "
-    "and with fewer cameras.",
-)
-def _fused(rng: "np.random.Generator") -> Tracker:
-    return _fused_tracker(rng)
-
-
-@TRACKERS.register(
-    "thermal-depth",
     scope="the default and both theses, with extensions",
-    summary="Combines the default detector in the thermal image and detections in the depth image, in "
-    "one Kalman filter for each person. Uses depth to find occluders. Re-identifies people by "
-    "colours, motion and stature.",
+    summary="Combines detections in the thermal image, in the depth image, and in the panorama if the robot "
+    "has that camera, in one Kalman filter for each person. Uses depth to find occluders. Re-identifies "
+    "people by colours, motion and stature.",
 )
-def _thermal_depth(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
-    from peopleboy.tracker.sensors.depth import DepthSensor
-    from peopleboy.tracker.sensors.thermal import ThermalSensor
-    from peopleboy.tracker.tracking.config import THERMAL_DEPTH
-    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
-
-    return PeopleTracker((ThermalSensor(THERMAL_DEPTH), DepthSensor(tracker=THERMAL_DEPTH)), THERMAL_DEPTH)
+def _fused(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
+    return _fused_tracker()
 
 
 @TRACKERS.register(
@@ -318,11 +298,11 @@ def _attentive_printed(rng: "np.random.Generator") -> Tracker:
     scope="as `fused` and `attentive`",
     summary="Adds the re-identification of `attentive` to `fused`, with all colour cameras.",
 )
-def _attentive_fused(rng: "np.random.Generator") -> Tracker:
+def _attentive_fused(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
     from peopleboy.tracker.attention.people.recogniser import ByColour
 
-    return AttentiveTracker(_fused_tracker(rng), ByColour())
+    return AttentiveTracker(_fused_tracker(), ByColour())
 
 
 def is_own(name: str) -> bool:

@@ -26,7 +26,6 @@ from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.contour.measurement.section_evidence import outline
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.track import Status, Track
 
 Line = NDArray[np.float64]  # (K, 2) [px] in the thermal image
@@ -44,11 +43,6 @@ def lines_of(explanation: object, points: int = 48) -> Mapping[int, tuple[Line, 
 @lines_of.register
 def _(explanation: ContourExplanation, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
     return {number: outline(ellipse, points) for number, ellipse in explanation.ellipses.items()}
-
-
-@lines_of.register
-def _(explanation: BothExplanations, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
-    return lines_of(explanation.thermal, points)
 
 
 @lines_of.register

@@ -33,13 +33,14 @@ from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanati
 from peopleboy.tracker.contour.measurement.contour import FEET, SECTIONS
 from peopleboy.tracker.contour.measurement.section_evidence import Evidence, evidence_of, section_lines
 from peopleboy.tracker.frame import DEPTH, PANORAMA
-from peopleboy.tracker.fusion.fused_explanations import parts_of
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicExplanation
-from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
+from peopleboy.tracker.sensors.depth import DepthExplanation
+from peopleboy.tracker.sensors.panorama import PanoramaExplanation
 from peopleboy.tracker.sensors.thermal import DetectionExplanation
 from peopleboy.tracker.track import Box, FloorPlace, Track
+from peopleboy.tracker.tracking.sensor import parts_of
 
 # ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for a person; in thresholds.
 _STEPS = (0.0, 1.0, 2.0)
@@ -202,7 +203,7 @@ def _(
 
 @draw_explained_sketches.register
 def _(
-    explanation: PeopleExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+    explanation: PanoramaExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
     found = [(line, NOBODYS) for line in outlines_of(explanation.foreground > 0.5)]
     coloured = found + _floor_ellipses(tracks, cameras[PANORAMA].camera)
@@ -215,6 +216,17 @@ def _(
 ) -> Mapping[str, Sketch]:
     found = [
         (_frame(one.found.box), VERIFIED if one.is_verified else NOBODYS) for one in explanation.detections
+    ]
+    return {DEPTH: Sketch.of(None, found + _floor_ellipses(tracks, cameras[DEPTH].camera))}
+
+
+@draw_explained_sketches.register
+def _(
+    explanation: DepthExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    found = [
+        (_frame(one.box), VERIFIED if score > 0.0 else NOBODYS)
+        for one, score in zip(explanation.layout.detections, explanation.scores, strict=False)
     ]
     return {DEPTH: Sketch.of(None, found + _floor_ellipses(tracks, cameras[DEPTH].camera))}
 

@@ -19,8 +19,8 @@ from peopleboy.scenarios.run_folder.atomic_output import PART
 from peopleboy.tracker.contour.explanation import ContourExplanation, Ellipse
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.fusion.fused_explanations import parts_of
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
+from peopleboy.tracker.tracking.sensor import parts_of
 
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
 SPREAD = "uncertainty_px2"

@@ -22,8 +22,8 @@ from peopleboy.tracker.panoramic.paper.distance_network import (
     DistanceModel,
     file_name,
 )
-from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 from peopleboy.tracker.panoramic.people_foreground import FILE, ForegroundModel
+from peopleboy.tracker.panoramic.place_model import PlaceModel
 
 _OPSET: Final = 17
 _BATCH: Final = "N"

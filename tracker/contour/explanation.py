@@ -1,7 +1,7 @@
 """Explanations of the contour tracker: contours and particles behind its tracks."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,8 +63,8 @@ class ContourExplanation:
     Attributes:
         config: settings of the tracker, which define contours.
         ellipses: the estimated contour by track id.
-        spread_px2: spread of the particles about the estimate, over x and y [px^2], by track id (thesis,
-            particles: the samples by track id; key 0 is the detector's cloud. Empty where they were not
+        spread_px2: spread of the particles about the estimate, over x and y [px^2], by track id.
+        particles: the samples by track id; key 0 is the detector's cloud. Empty where they were not
                 stored.
     """
 
@@ -72,3 +72,16 @@ class ContourExplanation:
     ellipses: Mapping[int, Ellipse]
     spread_px2: Mapping[int, float]
     particles: Mapping[int, Particles] = field(default_factory=dict)
+
+    def renumbered(self, number: Mapping[int, int]) -> "ContourExplanation":
+        """Return it with replaced track ids; tracks without a new one are left out."""
+        return replace(
+            self,
+            ellipses={number[one]: found for one, found in self.ellipses.items() if one in number},
+            spread_px2={number[one]: found for one, found in self.spread_px2.items() if one in number},
+            particles={
+                number.get(one, DETECTOR_KEY): found
+                for one, found in self.particles.items()
+                if one in number or one == DETECTOR_KEY
+            },
+        )

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Final
 
+NEAREST_M: Final = 0.3
 STATURE_M: Final = 1.72
 """Assumed stature of a person, from which the height of a box gives the distance."""
 
@@ -22,6 +23,7 @@ class KalmanConfig:
         posture: change of the log stature in a second, as people sit down or bend.
         floor_m: standard deviation of the feet from the floor, where the floor is known.
         toe_m: how much nearer than the middle of a person the lower end of the box is: the front foot.
+        nearest_m: least distance ahead of the robot, for sensors that see nothing behind it.
         shown: weight of the detected box in the output box; the rest is the prediction.
     """
 
@@ -35,6 +37,7 @@ class KalmanConfig:
     floor_m: float = 0.08
     shown: float = 0.5
     toe_m: float = 0.0
+    nearest_m: float = NEAREST_M
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,6 +110,7 @@ class ReidentificationConfig:
         uses_place: whether motion and stature count; else colours alone do, by `same`.
         walk_m, walk_m_s: standard deviation of how far a lost person is from where they were last seen, and
             its growth.
+        stray_m_s: the same growth of how far they are from where they would be if they had walked on.
         near: log-odds of a person who is found where another was lost.
         least_near: least log-odds of motion.
         statures: standard deviation of the log statures of people.
@@ -128,6 +132,7 @@ class ReidentificationConfig:
     uses_place: bool = False
     walk_m: float = 0.4
     walk_m_s: float = 0.5
+    stray_m_s: float = 0.3
     near: float = 2.0
     least_near: float = -4.0
     statures: float = 0.05
@@ -239,6 +244,8 @@ class PeopleTrackerConfig:
             image less well.
         existence_depth: evidence of the depth image.
         association_depth: association in the depth image.
+        existence_panorama: evidence of the panorama.
+        association_panorama: association in the panorama.
         colour: use of the colour image.
         stops_hidden: whether a hidden person who would be visible where the track is predicted stopped.
         hidden_share: share of a track that something nearer covers, from which it is hidden.
@@ -273,20 +280,45 @@ class PeopleTrackerConfig:
     association_depth: AssociationConfig = field(
         default_factory=lambda: AssociationConfig(overlap=0.0, highest=2.4)
     )
+    existence_panorama: ExistenceConfig = field(default_factory=ExistenceConfig)
+    association_panorama: AssociationConfig = field(
+        default_factory=lambda: AssociationConfig(overlap=0.0, highest=2.4)
+    )
     colour: ColourDetectionConfig = field(default_factory=ColourDetectionConfig)
     stops_hidden: bool = False
     hidden_share: float = 0.4
 
 
 _LONG_MEMORY: Final = ExistenceConfig(max_coast_occluded_s=0.4, forget_s=30.0, brief_forget_s=10.0)
+_ALL_ROUND: Final = ExistenceConfig(
+    birth=-1.0,
+    highest_score=8.0,
+    sightings=3,
+    at_once=math.inf,
+    confirmed=3.0,
+    max_coast_s=0.7,
+    max_coast_occluded_s=5.0,
+    coast_occluded_share=math.inf,
+    forget_s=20.0,
+    brief_forget_s=10.0,
+)
+_BY_PLACE: Final = ReidentificationConfig(uses_place=True, colour_unknown=-2.0, unclear=3.0)
 
-THERMAL_DEPTH: Final = PeopleTrackerConfig(
-    motion=KalmanConfig(toe_m=0.12, shown=0.8),
+FUSED: Final = PeopleTrackerConfig(
+    motion=KalmanConfig(toe_m=0.12, shown=0.8, nearest_m=-math.inf),
+    existence_panorama=_ALL_ROUND,
     existence=_LONG_MEMORY,
     existence_depth=_LONG_MEMORY,
     association=AssociationConfig(lost_s=0.5),
     association_depth=AssociationConfig(overlap=0.0, highest=2.4, lost_s=0.5),
-    reidentification=ReidentificationConfig(uses_place=True, colour_unknown=-2.0, unclear=3.0),
+    reidentification=_BY_PLACE,
     stops_hidden=True,
 )
-"""Settings for thermal and depth images together, chosen on seeds 100 and 101 of the suite `occlusion`."""
+"""Settings for several sensors, chosen on seeds 100 and 101 of the suite `occlusion`."""
+
+PANORAMIC: Final = PeopleTrackerConfig(
+    motion=KalmanConfig(acceleration_m_s2=(0.45, 0.2, 0.45), nearest_m=-math.inf),
+    existence_panorama=_ALL_ROUND,
+    reidentification=_BY_PLACE,
+)
+"""Settings for the panorama alone, chosen on seeds 100 to 102 of the scenarios `panoramic_...`."""

@@ -12,7 +12,7 @@ from peopleboy.geometry.small_matrices import inverse
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.track import FloorPlace
 from peopleboy.tracker.tracking.config import KalmanConfig
-from peopleboy.tracker.tracking.viewpoint import NEAREST_M, Position, Viewpoint
+from peopleboy.tracker.tracking.viewpoint import Position, Viewpoint
 
 Floats = NDArray[np.float64]
 
@@ -93,7 +93,7 @@ def predict(states: StateEstimates, dt_s: float, moved: Odometry, config: Kalman
     pushed = np.square(config.acceleration_m_s2)
     _walk_on(states.mean, states.covariance, dt_s, _turn(moved), pushed, config.posture**2, mean, covariance)
     mean[:, :3] = move_points(mean[:, :3], moved)
-    mean[:, 2] = np.maximum(mean[:, 2], NEAREST_M)
+    mean[:, 2] = np.maximum(mean[:, 2], config.nearest_m)
     return StateEstimates(mean, covariance)
 
 
@@ -152,15 +152,27 @@ def predicted_boxes(states: StateEstimates, view: Viewpoint, ratio: Floats) -> F
     return np.asarray(boxes, np.float64)
 
 
-def floor_positions(states: StateEstimates, origin_m: Position) -> list[FloorPlace]:
-    """Return positions on the floor in the robot frame, given the origin of the level frame."""
+def floor_positions(states: StateEstimates, common_m: Floats, origin_m: Position) -> list[FloorPlace]:
+    """Return positions on the floor in the robot frame.
+
+    Args:
+        states: K people.
+        common_m: (K, 2) deviations of the positions across and along the line of sight that no further image
+            reduces.
+        origin_m: of the level frame.
+    """
     forward, left, _ = origin_m
+    place = states.mean[:, (0, 2)]
+    sight = place / np.maximum(np.hypot(*place.T), 1e-6)[:, None]
+    axes = np.stack([np.column_stack([sight[:, 1], -sight[:, 0]]), sight], axis=1)
+    common = axes.transpose(0, 2, 1) @ (np.square(common_m)[:, :, None] * axes)
+    spread = states.covariance[:, (0, 0, 2, 2), (0, 2, 0, 2)].reshape(-1, 2, 2) + common
     return [
         FloorPlace(
-            position_m=(forward + float(mean[2]), left - float(mean[0])),
-            covariance_m2=(float(spread[2, 2]), -float(spread[0, 2]), float(spread[0, 0])),
+            position_m=(forward + ahead, left - right),
+            covariance_m2=(float(each[1, 1]), -float(each[0, 1]), float(each[0, 0])),
         )
-        for mean, spread in zip(states.mean, states.covariance, strict=True)
+        for (right, ahead), each in zip(place.tolist(), spread, strict=True)
     ]
 
 

@@ -21,7 +21,7 @@ from peopleboy.tracker.tracking.association import (
     likeness,
     shared_area,
 )
-from peopleboy.tracker.tracking.config import PeopleTrackerConfig
+from peopleboy.tracker.tracking.config import PeopleTrackerConfig, ReidentificationConfig
 from peopleboy.tracker.tracking.motion_filter import (
     NOBODY,
     Floats,
@@ -60,10 +60,16 @@ class PeopleTracker:
     Args:
         sensors: detect people; the first one's camera is the origin of the level frame.
         config: settings of the filter and of the tracks.
+        optional: further sensors, each used if the robot carries its camera.
     """
 
-    def __init__(self, sensors: Sequence[Sensor], config: PeopleTrackerConfig | None = None) -> None:
-        self._sensors = tuple(sensors)
+    def __init__(
+        self,
+        sensors: Sequence[Sensor],
+        config: PeopleTrackerConfig | None = None,
+        optional: Sequence[Sensor] = (),
+    ) -> None:
+        self._sensors, self._optional = tuple(sensors), tuple(optional)
         self._config = PeopleTrackerConfig() if config is None else config
         self._introduced: Box | None = None
         self._targets: list[TrackState] = []
@@ -76,7 +82,7 @@ class PeopleTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """The cameras of all sensors."""
+        """The required cameras: those of all sensors but the optional ones."""
         return tuple(dict.fromkeys(camera for sensor in self._sensors for camera in sensor.cameras))
 
     @property
@@ -91,7 +97,7 @@ class PeopleTracker:
         Raises:
             BadInput: a camera is unsuitable.
         """
-        for sensor in self._sensors:
+        for sensor in (*self._sensors, *self._mounted(calibrations)):
             sensor.check_cameras(calibrations)
 
     def introduce(self, box: Box) -> None:
@@ -105,6 +111,8 @@ class PeopleTracker:
             BadInput: the time does not increase, an image is invalid, or none of the sensors has one.
         """
         check_frame(frame)
+        if self._last_s is None:
+            self._sensors += self._mounted(frame.calibrations)
         self._check_images(frame)
         dt_s = self._time_step(frame.time_s)
         moved = frame.odometry or _STANDING
@@ -113,28 +121,33 @@ class PeopleTracker:
         self._last_seen = predict(self._last_seen, 0.0, moved, self._config.motion)
         occluders: dict[int, int] = {}
         hidden: set[int] = set()
-        has_image = False
+        missed: set[int] = set()
         for sensor in self._sensors:
             detections = sensor.detect(frame, self._predictions(frame))
             if detections is not None:
-                has_image = True
                 found = self._sense(sensor, detections, frame)
                 occluders |= self._occluders(detections, found)
+                missed |= self._missed(sensor, found, frame)
                 hidden |= self._look(sensor, found, frame, dt_s)
-        if has_image:
+        if missed:
             hidden |= occluders.keys()
             if self._config.stops_hidden:
                 self._stay_hidden(before, hidden, frame)
-            self._update_missed(occluders, hidden, frame.time_s, dt_s)
+            self._update_missed(missed, occluders, hidden, frame.time_s, dt_s)
         if self._introduced is not None:
             self._initiate_at(np.array(self._introduced), frame)
             self._introduced = None
         self._manage(frame.time_s)
         return self._tracks(frame)
 
+    def _mounted(self, calibrations: Mapping[str, Calibration]) -> tuple[Sensor, ...]:
+        """Return the optional sensors whose cameras are there."""
+        return tuple(one for one in self._optional if one.cameras[0] in calibrations)
+
     def _check_images(self, frame: Frame) -> None:
         """Refuse a frame without an image of any sensor, except between the images of slower cameras."""
-        if not any(sensor.cameras[0] in frame.images for sensor in self._sensors) and len(self._sensors) == 1:
+        is_first = self._settings is None
+        if is_first and frame.images and not any(one.cameras[0] in frame.images for one in self._sensors):
             raise BadInput(lacking(self._sensors[0].cameras[0], frame.images))
 
     def _time_step(self, time_s: float) -> float:
@@ -184,6 +197,12 @@ class PeopleTracker:
         front = find_occluders(detections.expected, self._are_confirmed(count), known)
         return {row: one for row, one in enumerate(front) if one is not None and row not in found}
 
+    def _missed(self, sensor: Sensor, found: Mapping[int, int], frame: Frame) -> set[int]:
+        """Return the tracks that a sensor should detect, as its image shows where they are, and does not."""
+        image = sensor.project(frame, self._predictions(frame))
+        rows = set(range(len(self._targets))) - found.keys()
+        return rows if image is None else {row for row in rows if image.is_inside[row]}
+
     def _look(self, sensor: Sensor, found: Mapping[int, int], frame: Frame, dt_s: float) -> set[int]:
         """Look where a sensor should see the tracks that it did not detect, and return the hidden ones."""
         rows = [row for row in range(len(self._targets)) if row not in found]
@@ -194,7 +213,7 @@ class PeopleTracker:
             if is_present:
                 self._targets[row].present_s = frame.time_s
             if is_absent:
-                self._targets[row].update_absent(dt_s, self._config.existence)
+                self._targets[row].update_absent(dt_s)
         return {
             row for row, hidden in zip(rows, seen.hidden, strict=True) if hidden > self._config.hidden_share
         }
@@ -252,6 +271,8 @@ class PeopleTracker:
                 float(detections.scores[column]), float(common[column]), float(speed[row])
             )
             target.update_seen(evidence, time_s, dt_s, existence)
+            if detections.common_m is not None:
+                target.common_m = detections.common_m[column]
             target.update_box(detections.camera, detections.boxes[column], has_width=detections.has_width)
             if not is_beside[row]:
                 target.mark_separate(time_s, dt_s)
@@ -283,17 +304,15 @@ class PeopleTracker:
         return [column for row, column in found.items() if self._targets[row].is_confirmed]
 
     def _update_missed(
-        self, occluders: Mapping[int, int], hidden: Set[int], time_s: float, dt_s: float
+        self, missed: Set[int], occluders: Mapping[int, int], hidden: Set[int], time_s: float, dt_s: float
     ) -> None:
-        """Update the tracks that no sensor detects."""
-        assert self._settings is not None
-        for row, target in enumerate(self._targets):
+        """Update the tracks that a sensor misses and no other one detects."""
+        for row in sorted(missed):
+            target = self._targets[row]
             if target.seen_s < time_s:
                 hider = occluders.get(row)
                 occluder = None if hider is None else self._targets[hider].id
-                target.update_missed(
-                    occluder, dt_s, self._settings.existence, is_hidden=row in hidden or target.is_pinned
-                )
+                target.update_missed(occluder, dt_s, is_hidden=row in hidden or target.is_pinned)
 
     def _stay_hidden(self, before: StateEstimates, hidden: Set[int], frame: Frame) -> None:
         """Stop hidden people who would now be visible: as no sensor detects them, they stopped.
@@ -352,7 +371,7 @@ class PeopleTracker:
         kept = np.flatnonzero(iou(detections.expected, box[None]) < _TAKEN)
         self._keep(kept)
         self._add(np.zeros(1, int), detections, frame.time_s)
-        self._confirm(self._targets[-1], -math.inf, detections.settings)  # a hint is certain
+        self._confirm(self._targets[-1], -math.inf)  # a hint is certain
 
     def _add(self, free: NDArray[np.intp], detections: SensorDetections, time_s: float) -> dict[int, int]:
         """Initiate tracks from some of the detections, and return their detections by row."""
@@ -370,6 +389,7 @@ class PeopleTracker:
                 pattern=detections.pattern[column],
                 colours=detections.colours[column],
                 ratio=detections.ratio(column),
+                existence=detections.settings.existence,
                 shown={detections.camera: (time_s, detections.boxes[column])},
                 log_odds=min(float(detections.scores[column]), detections.settings.existence.highest_score),
                 surest=float(detections.scores[column]),
@@ -386,20 +406,18 @@ class PeopleTracker:
         """Confirm, reidentify and delete tracks."""
         if self._settings is None:
             return
-        existence, _, reidentification = self._settings
-        self._reidentify(time_s, self._settings)
-        resolve_identity_swaps(self._targets, time_s, reidentification)
-        kept = [row for row, one in enumerate(self._targets) if not one.is_deleted(time_s, existence)]
+        self._reidentify(time_s, self._settings.reidentification)
+        resolve_identity_swaps(self._targets, time_s, self._settings.reidentification)
+        kept = [row for row, one in enumerate(self._targets) if not one.is_deleted(time_s)]
         self._keep(np.array(kept, int))
 
-    def _reidentify(self, time_s: float, settings: Settings) -> None:
+    def _reidentify(self, time_s: float, config: ReidentificationConfig) -> None:
         """Let new tracks continue lost ones, or confirm them as new people."""
-        existence, _, config = settings
         fresh = [
             row
             for row, one in enumerate(self._targets)
             if one.seen_s == time_s
-            and (one.is_confirmed or one.has_enough_evidence(existence))
+            and (one.is_confirmed or one.has_enough_evidence())
             and time_s - one.confirmed_s <= config.revised_s
         ]
         if not fresh:
@@ -421,12 +439,12 @@ class PeopleTracker:
             elif not target.is_confirmed and not (
                 is_open[number] and time_s - target.born_s < config.undecided_s
             ):
-                self._confirm(target, time_s, settings)
+                self._confirm(target, time_s)
 
-    def _confirm(self, target: TrackState, time_s: float, settings: Settings) -> None:
+    def _confirm(self, target: TrackState, time_s: float) -> None:
         target.confirmed_s = time_s
         target.id = next(self._ids)
-        target.log_odds = max(target.log_odds, settings.existence.confirmed)
+        target.log_odds = max(target.log_odds, target.existence.confirmed)
 
     def _tracks(self, frame: Frame) -> tuple[Track, ...]:
         if self._settings is None:
@@ -435,11 +453,12 @@ class PeopleTracker:
         images = {sensor.cameras[0]: sensor.project(frame, predicted) for sensor in self._sensors}
         places: Sequence[FloorPlace | None] = [None] * len(predicted)
         if predicted.origin_m is not None:
-            places = floor_positions(self._states, predicted.origin_m)
+            common_m = np.array([target.common_m for target in self._targets]).reshape(-1, 2)
+            places = floor_positions(self._states, common_m, predicted.origin_m)
         tracks = [
             self._track(row, self._boxes_of(row, images, frame.time_s), places[row], frame.time_s)
             for row, target in enumerate(self._targets)
-            if target.is_output(frame.time_s, self._settings.existence)
+            if target.is_output(frame.time_s)
             and any(image is not None and image.is_inside[row] for image in images.values())
         ]
         return tuple(sorted(tracks, key=lambda track: track.id))

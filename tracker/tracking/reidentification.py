@@ -51,22 +51,25 @@ class Candidates(NamedTuple):
 
     Attributes:
         places_m: (N, 2) to the right and ahead in the level frame.
+        velocities_m_s: (N, 2) along the same axes.
         variance_m2: (N, 2, 2) of the places.
         build: (N, 2) logarithm of the stature, and its variance.
         colours: (N, 512).
     """
 
     places_m: Floats
+    velocities_m_s: Floats
     variance_m2: Floats
     build: Floats
     colours: Colours
 
     @classmethod
     def of(cls, states: StateEstimates, colours: Sequence[Colours] | Colours) -> Self:
-        """Take the positions and statures of states (N) and their colours."""
+        """Take the positions, velocities and statures of states (N) and their colours."""
         mean, covariance = states.mean, states.covariance
         return cls(
             mean[:, (0, 2)],
+            mean[:, (3, 5)],
             covariance[:, (0, 0, 2, 2), (0, 2, 0, 2)].reshape(-1, 2, 2),
             np.column_stack([mean[:, 6], covariance[:, 6, 6]]),
             np.reshape(colours, (len(mean), FEATURES)),
@@ -95,12 +98,22 @@ def same_person_log_odds(
 
 
 def _by_motion(lost: Candidates, gone_s: Floats, found: Candidates, config: ReidentificationConfig) -> Floats:
-    """Return log-odds (L, N) by how far people would have walked in the time since they were seen."""
-    away = found.places_m[None] - lost.places_m[:, None]
-    walked_m2 = np.square(config.walk_m + config.walk_m_s * gone_s)[:, None, None, None] * np.eye(2)
+    """Return log-odds (L, N) by the way from where people were last seen, or from where they walked to.
+
+    A person who is lost has either stopped or turned, or has walked on.
+    """
+    still = _squared(lost.places_m, config.walk_m + config.walk_m_s * gone_s, lost, found)
+    walked_to_m = lost.places_m + gone_s[:, None] * lost.velocities_m_s
+    on = _squared(walked_to_m, config.walk_m + config.stray_m_s * gone_s, lost, found)
+    return np.asarray(np.maximum(config.near - 0.5 * np.minimum(still, on), config.least_near))
+
+
+def _squared(places_m: Floats, way_m: Floats, lost: Candidates, found: Candidates) -> Floats:
+    """Return the squared Mahalanobis distances (L, N) of people found from places, after ways (L,) [m]."""
+    away = found.places_m[None] - places_m[:, None]
+    walked_m2 = np.square(way_m)[:, None, None, None] * np.eye(2)
     spread = found.variance_m2[None] + lost.variance_m2[:, None] + walked_m2
-    squared = (away[:, :, None] @ inverse(spread) @ away[:, :, :, None])[:, :, 0, 0]
-    return np.asarray(np.maximum(config.near - 0.5 * squared, config.least_near))
+    return np.asarray((away[:, :, None] @ inverse(spread) @ away[:, :, :, None])[:, :, 0, 0])
 
 
 def _by_stature(lost: Candidates, found: Candidates, config: ReidentificationConfig) -> Floats:

@@ -75,6 +75,8 @@ class SensorDetections:
         assigned: index of a detection by the row of its track, for detections that were searched for there.
         is_search: whether the whole image was searched, so that a detection without a track is a new person.
         has_width: whether the widths of the boxes are measured, rather than assumed.
+        common_m: (M, 2) standard deviations of positions across and along the line of sight that further
+            images of a person do not reduce, as they come from gait and build; None if there are none.
         is_masked: whether colours are of a person's own pixels, so that they do not mix where people overlap.
         settings: of this sensor.
     """
@@ -90,6 +92,7 @@ class SensorDetections:
     is_search: bool = True
     has_width: bool = True
     is_masked: bool = False
+    common_m: Floats | None = None
     settings: Settings
 
     def __len__(self) -> int:
@@ -141,6 +144,11 @@ class SensorExplanations:
     """
 
     parts: tuple[object, ...]
+
+
+def parts_of(explanation: object) -> tuple[object, ...]:
+    """Return the explanations in the `parts` of a joined one; none for a single explanation."""
+    return getattr(explanation, "parts", ())
 
 
 def no_appearance(count: int) -> tuple[Pattern, Colours]:

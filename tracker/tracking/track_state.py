@@ -41,6 +41,7 @@ class TrackState:
         pattern: thermal appearance.
         colours: colours of the clothes; 0 where unknown.
         ratio: width of the box divided by its height.
+        existence: settings of the sensor that detected it last.
         shown: time [s] and box (4,) [px] of the last detection, by camera.
         watched_s: total time with detections.
         log_odds: evidence that it is a person.
@@ -56,6 +57,8 @@ class TrackState:
         recent: colours since the person was last seen apart from others.
         clear_s: how long the person has been seen apart from others.
         separate_s: when the person was last seen apart from others.
+        common_m: (2,) deviation of the position across and along the line of sight that further images do not
+            reduce.
     """
 
     key: int
@@ -64,6 +67,7 @@ class TrackState:
     pattern: Pattern
     colours: Colours
     ratio: float
+    existence: ExistenceConfig
     shown: dict[str, tuple[float, Floats]]
     watched_s: float = 0.0
     log_odds: float = 0.0
@@ -79,6 +83,7 @@ class TrackState:
     recent: Colours = field(default_factory=lambda: np.zeros(FEATURES, np.float32))
     clear_s: float = 0.0
     separate_s: float = -math.inf
+    common_m: Floats = field(default_factory=lambda: np.zeros(2))
 
     @property
     def is_confirmed(self) -> bool:
@@ -88,7 +93,8 @@ class TrackState:
     def update_seen(
         self, seen: DetectionEvidence, time_s: float, dt_s: float, config: ExistenceConfig
     ) -> None:
-        """Update the evidence with a detection."""
+        """Update the evidence with a detection by a sensor of these settings."""
+        self.existence = config
         self.seen_s, self.occluder = time_s, None
         self.is_hidden = self.is_pinned = False
         self.sightings += 1
@@ -141,21 +147,20 @@ class TrackState:
         self.log_odds = max(self.log_odds, before.log_odds)
         before.id, before.seen_s = 0, -math.inf
 
-    def update_missed(
-        self, occluder: int | None, dt_s: float, config: ExistenceConfig, *, is_hidden: bool
-    ) -> None:
+    def update_missed(self, occluder: int | None, dt_s: float, *, is_hidden: bool) -> None:
         """Record a missed detection, the possible occluder, and whether something hides the person.
 
         However long a confirmed person is not found, one detection restores the track.
         """
+        config = self.existence
         self.occluder, self.is_hidden = occluder, is_hidden or occluder is not None
         loss = config.missed_hidden if self.is_hidden else config.missed
         least = min(self.log_odds, config.deletion_log_odds) if self.is_confirmed else -math.inf
         self.log_odds = max(self.log_odds - loss * dt_s / config.independent_s, least)
 
-    def update_absent(self, dt_s: float, config: ExistenceConfig) -> None:
+    def update_absent(self, dt_s: float) -> None:
         """Record that the background is visible where the track is predicted."""
-        self.log_odds -= config.absent * dt_s / config.independent_s
+        self.log_odds -= self.existence.absent * dt_s / self.existence.independent_s
 
     def status(self, time_s: float) -> Status:
         """Return the current status."""
@@ -165,8 +170,9 @@ class TrackState:
             return Status.TRACKED
         return Status.TOTALLY_OCCLUDED if self.is_hidden else Status.PARTLY_OCCLUDED
 
-    def is_output(self, time_s: float, config: ExistenceConfig) -> bool:
+    def is_output(self, time_s: float) -> bool:
         """Return whether the track is still reported at its predicted position."""
+        config = self.existence
         doubt = config.max_coast_s
         if self.is_hidden:
             doubt = max(doubt, min(config.max_coast_occluded_s, config.coast_occluded_share * self.watched_s))
@@ -176,14 +182,16 @@ class TrackState:
             and time_s - max(self.seen_s, self.present_s if self.is_hidden else -math.inf) <= doubt
         )
 
-    def is_deleted(self, time_s: float, config: ExistenceConfig) -> bool:
+    def is_deleted(self, time_s: float) -> bool:
         """Return whether the track is deleted: it could not be reidentified."""
+        config = self.existence
         gone = time_s - self.seen_s
         if not self.is_confirmed:
             return self.log_odds < config.deletion_log_odds or gone > config.max_coast_s
         return gone > (config.forget_s if self.watched_s > config.brief_s else config.brief_forget_s)
 
-    def has_enough_evidence(self, config: ExistenceConfig) -> bool:
+    def has_enough_evidence(self) -> bool:
         """Return whether there is enough evidence for confirmation."""
+        config = self.existence
         is_enough = self.sightings >= config.sightings or self.surest >= config.at_once
         return is_enough and self.log_odds > config.confirmed

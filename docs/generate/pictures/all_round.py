@@ -25,14 +25,12 @@ from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.studies.training.panorama_sequences import panorama_calibration, render_panoramas
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
-from peopleboy.tracker.panoramic.people.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
-from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene
-from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
-from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.panoramic.people.place_model import PlaceModel
+from peopleboy.tracker.panoramic.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
+from peopleboy.tracker.panoramic.panorama_patches import PanoramaScene
 from peopleboy.tracker.panoramic.people_foreground import Foreground
+from peopleboy.tracker.sensors.panorama import PanoramaExplanation
 from peopleboy.tracker.track import FloorPlace, Status, Track
-from peopleboy.tracker.trackers import make_tracker
+from peopleboy.tracker.trackers import explanation_of, make_tracker
 
 DRIVE = ("panoramic_moving", 0)
 """Scenario and seed of the panorama: three people, and a driving robot."""
@@ -58,7 +56,7 @@ class Moment:
         true_m: (P, 2) true positions of people in the robot's frame; NaN for absent people.
     """
 
-    explanation: PeopleExplanation
+    explanation: PanoramaExplanation
     scene: PanoramaScene
     tracks: tuple[Track, ...]
     true_m: NDArray[np.float64]
@@ -103,7 +101,7 @@ def _moment() -> Moment:
     name, seed = DRIVE
     scenario = load_scenario(name)
     film, camera = render_panoramas(scenario, seed), panorama_calibration(scenario, seed)
-    tracker, eyes = PanoramicTracker(PlaceModel.load()), Foreground()
+    tracker, eyes = make_tracker("panoramic"), Foreground()
     for k, image in enumerate(film.images[: IMAGE + 1]):
         time_s, moved = float(film.time_s[k]), film.odometry(k)
         frame = Frame(
@@ -111,9 +109,10 @@ def _moment() -> Moment:
         )
         tracks = tracker.update(frame)
         foreground = eyes.update(image, time_s, moved, camera)
-    assert tracker.explanation is not None
+    explanation = explanation_of(tracker)
+    assert isinstance(explanation, PanoramaExplanation)
     scene = PanoramaScene.of(image, foreground, eyes.novelty, camera)
-    return Moment(tracker.explanation, scene, tracks, film.place_m[k])
+    return Moment(explanation, scene, tracks, film.place_m[k])
 
 
 def _colour(track: Track) -> str:

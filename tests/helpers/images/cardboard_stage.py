@@ -8,25 +8,26 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
-from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
+from peopleboy.tracker.sensors.panorama import PanoramaSensor
 from peopleboy.tracker.track import Track
+from peopleboy.tracker.tracking.config import PANORAMIC, PeopleTrackerConfig
+from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 from tests.helpers.images.cardboard import Cardboard, CardboardEyes, CardboardModel, frame_of
 
 Tracks = tuple[Track, ...]
 
 
-def cardboard_tracker(config: PeopleConfig | None = None) -> PanoramicTracker:
+def cardboard_tracker(config: PeopleTrackerConfig = PANORAMIC) -> PeopleTracker:
     """A tracker with stand-ins for all that is taught."""
-    tracker = PanoramicTracker(CardboardModel(), config)
-    tracker._foreground = CardboardEyes()
-    return tracker
+    sensor = PanoramaSensor(tracker=config, model=CardboardModel())
+    sensor._foreground = CardboardEyes()
+    return PeopleTracker((sensor,), config)
 
 
 class Stage:
     """Shows a tracker people at a rate."""
 
-    def __init__(self, rate_hz: int = 15, config: PeopleConfig | None = None) -> None:
+    def __init__(self, rate_hz: int = 15, config: PeopleTrackerConfig = PANORAMIC) -> None:
         self.tracker = cardboard_tracker(config)
         self.rate_hz, self.frames = rate_hz, 0
         self.ever: set[int] = set()

@@ -22,7 +22,6 @@ from peopleboy.scenarios.drawing.overlay import (
 )
 from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
 from peopleboy.tracker.contour.measurement.section_evidence import outline
-from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.track import Status
 from tests.helpers.runs import synthetic_ticks as made
 
@@ -132,9 +131,9 @@ def test_an_encoded_picture_has_its_colours_in_order() -> None:
     assert decoded[8, 8].tolist() == pytest.approx([0, 0, 250], abs=6)
 
 
-def test_contours_of_the_handover_are_drawn_under_the_shared_numbers() -> None:
+def test_contours_are_drawn_under_their_new_numbers() -> None:
     contours = made.explain()
-    both = lines_of(BothExplanations.of(contours, None, {1: 8}), 24)
+    both = lines_of(contours.renumbered({1: 8}), 24)
     assert list(both) == [8]
     for one, other in zip(both[8], lines_of(contours, 24)[1], strict=True):
         assert one.shape[1] == 2

@@ -28,11 +28,11 @@ from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.tracker.attention.people.attentive_explanation import Attended, AttentiveExplanation
 from peopleboy.tracker.attention.people.person_views import PersonView
 from peopleboy.tracker.frame import COLOUR
-from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
-from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
+from peopleboy.tracker.sensors.panorama import PanoramaExplanation
 from peopleboy.tracker.sensors.thermal import DetectionExplanation
 from peopleboy.tracker.track import FloorPlace
+from peopleboy.tracker.tracking.sensor import SensorExplanations
 from tests.helpers.runs import synthetic_ticks as made
 from tests.helpers.runs.hand_made_tracks import track
 from tests.helpers.runs.synthetic_ticks import explain
@@ -40,7 +40,7 @@ from tests.helpers.runs.synthetic_ticks import explain
 
 def test_only_who_has_a_contour_is_drawn_and_in_the_colour_of_the_shared_number() -> None:
     alone = made.make_tick(10)
-    both = BothExplanations.of(alone.explanation, None, {1: 4})
+    both = SensorExplanations((alone.explanation.renumbered({1: 4}), None))
     tick = replace(alone, tracks=(track(2), replace(made.TRACK, id=4), track(9)), explanation=both)
     told, usual = draw_explained_lines(both, tick), draw_explained_lines(alone.explanation, alone)
     assert np.array_equal(told.line, usual.line)
@@ -50,7 +50,7 @@ def test_only_who_has_a_contour_is_drawn_and_in_the_colour_of_the_shared_number(
 
 def test_samples_are_those_of_the_thermal_tracker() -> None:
     contours = made.make_tick(10).explanation
-    told = draw_explained_points(BothExplanations.of(contours, None, {1: 4}))
+    told = draw_explained_points(SensorExplanations((contours.renumbered({1: 4}), None)))
     usual = draw_explained_points(contours)
     assert told.keys() == usual.keys()
     detector = "particles/detector"
@@ -59,7 +59,7 @@ def test_samples_are_those_of_the_thermal_tracker() -> None:
 
 
 def test_with_nobody_in_the_thermal_image_nothing_is_drawn_there() -> None:
-    both = BothExplanations.of(made.make_tick(10, None).explanation, None, {})
+    both = SensorExplanations((made.make_tick(10, None).explanation, None))
     assert len(draw_explained_lines(both, replace(made.make_tick(10), tracks=(track(2),))).line) == 0
 
 
@@ -129,10 +129,10 @@ def test_a_round_place_is_seen_at_its_bearing_and_as_wide_as_it_is(
     assert all(np.abs(np.diff(part[:, 0])).max() < 240.0 for part in parts)
 
 
-def people() -> PeopleExplanation:
+def people() -> PanoramaExplanation:
     background = np.random.default_rng(0).integers(0, 255, (120, 480, 3), np.uint8)
     shown = np.where(across(), np.float32(0.8), np.float32(0.3))
-    return PeopleExplanation(background, shown, np.zeros((120, 480), np.float32))
+    return PanoramaExplanation(background, shown, np.zeros((120, 480), np.float32))
 
 
 def test_people_all_round_are_drawn_as_outlines_and_where_each_stands() -> None:
@@ -152,11 +152,11 @@ def test_people_all_round_are_drawn_as_outlines_and_where_each_stands() -> None:
 
 def test_of_the_handover_the_panoramas_part_is_drawn() -> None:
     cameras, tracks = {"panorama": PanoramaConfig()}, (track(3),)
-    both = draw_explained_sketches(BothExplanations.of(explain(), people(), {}), tracks, cameras)
+    both = draw_explained_sketches(SensorExplanations((explain(), people())), tracks, cameras)
     alone = draw_explained_sketches(people(), tracks, cameras)
     assert both.keys() == alone.keys() == {"panorama"}
     assert np.array_equal(both["panorama"].colour, alone["panorama"].colour)
-    assert draw_explained_sketches(BothExplanations.of(explain(), None, {}), tracks, cameras) == {}
+    assert draw_explained_sketches(SensorExplanations((explain(), None)), tracks, cameras) == {}
 
 
 def test_of_other_explanations_no_sketch_is_drawn() -> None:

@@ -1,5 +1,5 @@
 from peopleboy.scenarios.run_folder.run_tables import COLUMNS, TRACKS, explained, read_explanation, track_rows
-from peopleboy.tracker.fusion.fused_explanations import BothExplanations
+from peopleboy.tracker.tracking.sensor import SensorExplanations
 from tests.helpers.runs import synthetic_ticks as made
 
 
@@ -25,6 +25,6 @@ def test_contours_of_a_tracker_that_is_not_ours_are_not_made_up() -> None:
 
 def test_of_the_handover_who_has_a_contour_has_values_under_its_shared_number() -> None:
     contours = made.make_tick(10).explanation
-    both = BothExplanations.of(contours, None, {1: 6})
+    both = SensorExplanations((contours.renumbered({1: 6}), None))
     assert explained(both, 6) == explained(contours, 1)
     assert explained(both, 1) == dict.fromkeys(COLUMNS)

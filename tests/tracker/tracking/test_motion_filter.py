@@ -72,7 +72,7 @@ def test_places_on_the_floor_are_told_in_the_frame_of_the_robot(
 ) -> None:
     left = away * bearing
     paths = initiate(box_at(np.array([-left, 1.2, away])), VIEW, CONFIG)
-    (place,) = floor_positions(paths, (ahead, aside, 1.2))
+    (place,) = floor_positions(paths, np.zeros((1, 2)), (ahead, aside, 1.2))
     assert place.position_m == pytest.approx((away + ahead, left + aside), abs=1e-3)
     robot_from_level = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]])
     xx, xy, yy = place.covariance_m2

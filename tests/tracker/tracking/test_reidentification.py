@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.tracking.appearance import FEATURES, Colours
-from peopleboy.tracker.tracking.config import ReidentificationConfig
+from peopleboy.tracker.tracking.config import ExistenceConfig, ReidentificationConfig
 from peopleboy.tracker.tracking.motion_filter import STATE, StateEstimates
 from peopleboy.tracker.tracking.reidentification import (
     Candidates,
@@ -31,6 +31,7 @@ def person(number: int, was: float, now: float | None, seen_s: float = NOW_S) ->
     target = TrackState(
         key=number,
         born_s=0.0,
+        existence=ExistenceConfig(),
         seen_s=seen_s,
         pattern=np.zeros(72, np.float32),
         colours=wearing(was),

@@ -19,6 +19,7 @@ def known() -> TrackState:
     return TrackState(
         key=0,
         born_s=0.0,
+        existence=CONFIG,
         seen_s=0.0,
         pattern=np.zeros(4, np.float32),
         colours=np.zeros(FEATURES, np.float32),
@@ -41,19 +42,19 @@ def test_who_goes_on_to_look_like_nobody_is_told_no_more() -> None:
     target = known()
     images = round((CONFIG.confirmed - CONFIG.deletion_log_odds) * CONFIG.independent_s / DT_S)
     time_s = seen(target, -1.0, images - 1, 0.0)
-    assert target.is_output(time_s, CONFIG)
+    assert target.is_output(time_s)
     time_s = seen(target, -1.0, 2, time_s)
-    assert not target.is_output(time_s, CONFIG)
+    assert not target.is_output(time_s)
 
 
 @pytest.mark.parametrize("hider", [None, 2])
 def test_who_was_away_is_told_with_the_first_image_that_shows_him(hider: int | None) -> None:
     target = known()
     for _ in range(200):
-        target.update_missed(hider, DT_S, CONFIG, is_hidden=False)
+        target.update_missed(hider, DT_S, is_hidden=False)
     assert target.log_odds == CONFIG.deletion_log_odds
     time_s = seen(target, 0.5, 1, 200 * DT_S)
-    assert target.is_output(time_s, CONFIG)
+    assert target.is_output(time_s)
 
 
 def test_a_clear_image_counts_at_once_though_those_before_said_little() -> None:
@@ -62,7 +63,7 @@ def test_a_clear_image_counts_at_once_though_those_before_said_little() -> None:
     seen(target, CONFIG.highest_score, 3, 0.0, speed_m_s=0.0)
     left = (1.0 - CONFIG.evidence_gain) ** 3 * (CONFIG.highest_score - CONFIG.deletion_log_odds)
     assert target.log_odds == pytest.approx(CONFIG.highest_score - left)
-    assert target.has_enough_evidence(CONFIG)
+    assert target.has_enough_evidence()
 
 
 @given(st.floats(0.0, 8.0), st.floats(-8.0, 8.0))
@@ -77,8 +78,8 @@ def test_an_image_that_says_less_than_those_before_adds_its_own_part(before: flo
 def test_who_was_never_told_fades_when_not_found() -> None:
     target = known()
     target.id, target.log_odds = 0, CONFIG.deletion_log_odds
-    target.update_missed(None, DT_S, CONFIG, is_hidden=False)
-    assert target.is_deleted(DT_S, CONFIG)
+    target.update_missed(None, DT_S, is_hidden=False)
+    assert target.is_deleted(DT_S)
 
 
 def images_until_told(score: float, speed_m_s: float) -> int:
@@ -86,7 +87,7 @@ def images_until_told(score: float, speed_m_s: float) -> int:
     target.id, target.log_odds = 0, score
     for image in range(1, 1000):
         seen(target, score, 1, image * DT_S, speed_m_s)
-        if target.has_enough_evidence(CONFIG):
+        if target.has_enough_evidence():
             return image
     raise AssertionError("never told")
 
@@ -102,8 +103,8 @@ def test_hidden_people_are_told_for_a_share_of_how_long_they_were_watched(
     longest_s = max(
         min(CONFIG.coast_occluded_share * watched_s, CONFIG.max_coast_occluded_s), CONFIG.max_coast_s
     )
-    assert hidden.is_output(gone_s, CONFIG) == (gone_s <= longest_s)
-    assert away.is_output(gone_s, CONFIG) == (gone_s <= CONFIG.max_coast_s)
+    assert hidden.is_output(gone_s) == (gone_s <= longest_s)
+    assert away.is_output(gone_s) == (gone_s <= CONFIG.max_coast_s)
 
 
 def test_who_stands_still_is_no_new_sight_in_every_image() -> None:

@@ -1,7 +1,7 @@
 """State of the attentive tracker, for plots and recordings."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import singledispatch
 from typing import Final
 
@@ -13,7 +13,6 @@ from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.image_sums import ImageSums
 from peopleboy.tracker.attention.people.person_views import PersonView
 from peopleboy.tracker.contour.explanation import ContourExplanation
-from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
 
 TRACKING_ATTENTION: Final = AttentionConfig(scales=(0.64, 0.8, 1.0, 1.25, 1.56))
 
@@ -77,15 +76,4 @@ def renumbered(explanation: object, number: Mapping[int, int]) -> object:  # noq
 
 @renumbered.register
 def _(explanation: ContourExplanation, number: Mapping[int, int]) -> object:
-    return BothExplanations.of(explanation, None, number).thermal
-
-
-@renumbered.register
-def _(explanation: BothExplanations, number: Mapping[int, int]) -> object:
-    return BothExplanations.of(explanation.thermal, explanation.panoramic, number)
-
-
-@renumbered.register
-def _(explanation: FusedExplanation, number: Mapping[int, int]) -> object:
-    both = BothExplanations.of(explanation.both.thermal, explanation.both.panoramic, number)
-    return replace(explanation, both=both)
+    return explanation.renumbered(number)

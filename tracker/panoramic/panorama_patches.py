@@ -10,8 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.geometry.camera_calibration import PanoramaCalibration
-from peopleboy.tracker.panoramic.people.band_colours import BandColours, look_at
-from peopleboy.tracker.panoramic.people.figure_patch import (
+from peopleboy.tracker.panoramic.figure_patch import (
     KNOWN,
     PEOPLE,
     FigureMap,
@@ -76,10 +75,6 @@ class PanoramaScene:
         left = left + 0.5 + 0.25 * width
         known = between(self.figures.sums, KNOWN, left, left + 0.5 * width, top, bottom)
         return 1.0 - known / (0.5 * width * (bottom - top))
-
-    def clothing(self, bearing_rad: float, distance_m: float) -> BandColours:
-        """Return the appearance of the person at a position, from uncovered pixels."""
-        return look_at(self.image, self.foreground, self.covered, bearing_rad, distance_m, self.calibration)
 
     def box(self, bearing_rad: float, distance_m: float) -> Box:
         """Return the box [px] of an upright person, which may reach beyond the image and over the seam."""

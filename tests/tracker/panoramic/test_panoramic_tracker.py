@@ -8,10 +8,9 @@ import pytest
 
 from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.frame import Frame, Odometry
-from peopleboy.tracker.panoramic.people.panorama_patches import person_box
-from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
-from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
+from peopleboy.tracker.panoramic.panorama_patches import person_box
 from peopleboy.tracker.track import Status
+from peopleboy.tracker.tracking.config import PANORAMIC
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.cardboard import (
     BLUE,
@@ -22,12 +21,11 @@ from tests.helpers.images.cardboard import (
     WHITE,
     WIDTH,
     Cardboard,
-    CardboardModel,
     frame_of,
     is_cardboard,
     panorama,
 )
-from tests.helpers.images.cardboard_stage import Stage, number_at
+from tests.helpers.images.cardboard_stage import Stage, cardboard_tracker, number_at
 
 RATES = pytest.mark.parametrize("rate_hz", [3, 15])
 
@@ -49,7 +47,8 @@ def test_who_stands_there_is_believed_within_a_second_and_placed(rate_hz):
         assert number_at(tracks, person, within_m=0.15) is not None
     for track in tracks:
         x, y = track.place.position_m
-        assert track.boxes == {"panorama": person_box(math.atan2(y, x), math.hypot(x, y), CAMERA)}
+        box = person_box(math.atan2(y, x), math.hypot(x, y), CAMERA)
+        assert track.boxes["panorama"] == pytest.approx(box, abs=0.5)
         assert 0 < track.confidence <= 1
         assert 1.0 < track.age_s <= 2.0
         xx, xy, yy = track.place.covariance_m2
@@ -121,19 +120,6 @@ def test_who_is_hidden_stays_in_mind_and_is_told_who_hides_it(rate_hz):
 
 
 @RATES
-def test_who_comes_out_elsewhere_and_looks_strange_at_first_has_its_old_number(rate_hz):
-    """At the border of who hid it, somebody's first image shows that one's colours, too."""
-    stage = Stage(rate_hz)
-    front, back = Cardboard(1.8, 2.0, shirt=GREEN), Cardboard(3.5, 2.0, shirt=RED)
-    out = replace(back, bearing_rad=2.4)
-    number = number_at(stage.play(1.5, still(replace(front, bearing_rad=1.6), back))[-1], back)
-    stage.play(2.0, still(front, back))
-    assert number_at(stage.show(front, replace(out, shirt=BLUE)), out) is None
-    assert number_at(stage.play(1.0, still(front, out))[-1], out) == number
-    assert stage.ever == {1, 2}
-
-
-@RATES
 def test_two_who_pass_each_other_keep_their_numbers(rate_hz):
     stage = Stage(rate_hz)
 
@@ -165,38 +151,12 @@ def test_who_goes_and_comes_back_elsewhere_has_its_old_number_and_another_one_a_
 
 
 def test_who_has_been_gone_for_too_long_is_somebody_new():
-    config = PeopleConfig(identity=replace(PeopleConfig().identity, forget_s=1.0))
+    existence = replace(PANORAMIC.existence_panorama, forget_s=1.0, brief_forget_s=1.0)
+    config = replace(PANORAMIC, existence_panorama=existence)
     stage = Stage(config=config)
     stage.play(1.0, still(ANNA))
     stage.play(4.0, still())
     assert number_at(stage.play(1.0, still(ANNA))[-1], ANNA) == 2
-
-
-@RATES
-def test_numbers_that_two_people_took_from_each_other_are_put_right(rate_hz):
-    """Two come near each other and part again, each in the other's clothes: they walked on, in truth."""
-    stage = Stage(rate_hz)
-    meet_s = 2.0
-
-    def scene(time_s):
-        aside = 0.15 + 0.2 * abs(time_s - meet_s)
-        left, right = (RED, BLUE) if time_s < meet_s else (BLUE, RED)
-        return Cardboard(2.5, aside, shirt=left), Cardboard(2.5, -aside, shirt=right)
-
-    reported = stage.play(5.0, scene)
-    early, late = round(1.8 * rate_hz), len(reported) - 1
-    red, blue = (number_at(reported[early], one) for one in scene(early / rate_hz))
-    assert {red, blue} == {1, 2}
-    assert [number_at(reported[late], one) for one in scene(late / rate_hz)] == [blue, red]
-    assert stage.ever == {1, 2}
-
-
-def test_who_is_somebody_else_far_from_everybody_known_gets_a_new_number():
-    stage = Stage()
-    assert number_at(stage.play(2.0, still(ANNA))[-1], ANNA) == 1
-    other = replace(ANNA, shirt=BLUE)
-    assert number_at(stage.play(0.3, still(other))[-1], other) == 1
-    assert number_at(stage.play(2.5, still(other))[-1], other) == 2
 
 
 @RATES
@@ -236,21 +196,6 @@ def test_between_images_tracks_go_on_with_the_robot_and_grow_unsure():
     assert later.age_s == pytest.approx(seen.age_s + 0.2 + 1 / 15)
 
 
-def test_two_tracks_at_one_place_become_one():
-    stage = Stage()
-    beside = replace(ANNA, bearing_rad=ANNA.bearing_rad + 0.45)
-    first = stage.play(1.5, still(ANNA, beside))[-1]
-    assert len(first) == 2
-    persons, number = stage.tracker._persons, number_at(first, ANNA)
-    anna = next(one for one in persons if one.id == number)
-    stage.tracker._persons = tuple(
-        replace(one, motion=anna.motion, clothing=anna.clothing) for one in persons
-    )
-    (track,) = stage.show(ANNA)
-    assert track.id in (1, 2)
-    assert [one.id for one in stage.play(1.0, still(ANNA))[-1]] == [track.id]
-
-
 def test_an_empty_hall_has_nobody_in_it_for_however_long():
     stage = Stage(3)
     assert not any(stage.play(5.0, still()))
@@ -272,7 +217,7 @@ def test_it_explains_who_was_taken_for_whom():
     replace(CAMERA, axis_rad=0.8), replace(CAMERA, ring_height_m=1.5), replace(CAMERA, width=360),
 ])  # fmt: skip
 def test_another_camera_than_the_one_that_was_learned_is_refused(other):
-    tracker = PanoramicTracker(CardboardModel())
+    tracker = cardboard_tracker()
     with refused("panorama", "trained", "other network"):
         tracker.check_cameras({"panorama": other})
     with refused("panorama", "trained", "other network"):
@@ -281,9 +226,9 @@ def test_another_camera_than_the_one_that_was_learned_is_refused(other):
 
 
 def test_a_camera_that_is_flat_or_unknown_is_refused():
-    tracker = PanoramicTracker(CardboardModel())
     flat = PinholeCalibration(intrinsics=np.eye(3), robot_from_camera=np.eye(4))
     for calibrations in ({}, {"panorama": flat}, {"other": CAMERA}):
+        tracker = cardboard_tracker()
         with refused("panorama", "calibrated panoramic camera"):
             tracker.check_cameras(calibrations)
         with refused("panorama", "calibrated panoramic camera"):
@@ -292,12 +237,12 @@ def test_a_camera_that_is_flat_or_unknown_is_refused():
 
 @pytest.mark.parametrize("image", [HALL[:, :, 0], HALL.astype(float), np.zeros((0, 0, 3), np.uint8)])
 def test_what_is_no_colour_image_is_refused(image):
-    tracker = PanoramicTracker(CardboardModel())
+    tracker = cardboard_tracker()
     with refused("panorama image must be (H, W, 3) uint8"):
         tracker.update(Frame(images={"panorama": image}, time_s=0.0, calibrations={"panorama": CAMERA}))
 
 
 def test_without_images_there_is_nobody():
-    tracker = PanoramicTracker(CardboardModel())
+    tracker = cardboard_tracker()
     assert tracker.cameras == ("panorama",)
     assert tracker.update(Frame(images={}, time_s=0.0)) == ()

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.panoramic.people.panorama_patches import BODY_M, PanoramaScene, person_box
+from peopleboy.tracker.panoramic.panorama_patches import BODY_M, PanoramaScene, person_box
 from tests.helpers.images.cardboard import CAMERA, HALL, HEIGHT, WIDTH, Cardboard, mask_of, scene_of
 
 BEARINGS, DISTANCES = st.floats(-math.pi, math.pi), st.floats(1.2, 7.0)

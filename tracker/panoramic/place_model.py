@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.networks.inference import DenseNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
+from peopleboy.tracker.panoramic.figure_patch import PATCH, Map
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView
-from peopleboy.tracker.panoramic.people.figure_patch import PATCH, Map
 
 INPUTS = PATCH + 2
 _FARTHEST_M = 8.0

@@ -3,7 +3,7 @@ import math
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.panoramic.people.panorama_patches import promising_places
+from peopleboy.tracker.panoramic.panorama_patches import promising_places
 from tests.helpers.images.cardboard import Cardboard, scene_of
 
 BEARINGS, DISTANCES = st.floats(-math.pi, math.pi), st.floats(1.4, 6.0)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.panoramic.people.figure_patch import (
+from peopleboy.tracker.panoramic.figure_patch import (
     ACROSS,
     BOTTOM_M,
     HALF_WIDTH_M,

@@ -6,8 +6,8 @@ import pytest
 
 from peopleboy.tracker.networks.inference import DenseNetwork
 from peopleboy.tracker.networks.weights_archive import WeightsArchive
-from peopleboy.tracker.panoramic.people.figure_patch import PATCH
-from peopleboy.tracker.panoramic.people.place_model import (
+from peopleboy.tracker.panoramic.figure_patch import PATCH
+from peopleboy.tracker.panoramic.place_model import (
     INPUTS,
     PlaceModel,
     with_distance,

@@ -1,1 +1,0 @@
-"""Fusion of thermal, depth and colour: one track for each person."""

@@ -1,1 +1,0 @@
-"""The panoramic tracker of several people, for a standing or moving robot."""
