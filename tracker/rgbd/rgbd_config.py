@@ -87,8 +87,6 @@ class RgbdConfig:
         has_verification: whether detections must also be classified as human.
         sees_depth: whether windows are classified by depth as well as by colour.
         least_far_score, least_near_score: least score of a human's window.
-        least_other_score: least score of a window whose object is human by other evidence, such as its
-            warmth: lamps are warm, too.
     """
 
     size: HumanSize = field(default_factory=HumanSize)
@@ -99,7 +97,6 @@ class RgbdConfig:
     sees_depth: bool = True
     least_far_score: float = 0.9
     least_near_score: float = 0.5
-    least_other_score: float = -0.3
 
     def least_score(self, kind: WindowRange) -> float:
         """Return the least score of a human's window of a range."""

@@ -1,7 +1,7 @@
 """The tracker of people by depth and colour on a moving robot (SA chapter 4)."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -54,7 +54,6 @@ class RgbdTracker:
         config: settings.
         model: classifies windows as human.
         rng: random generator of the particles.
-        is_human: classifies objects by further evidence; None for none.
     """
 
     def __init__(
@@ -62,10 +61,8 @@ class RgbdTracker:
         config: RgbdConfig,
         model: WindowModel,
         rng: np.random.Generator,
-        is_human: Callable[[PreDetection, Frame], bool] | None = None,
     ) -> None:
         self.config = config
-        self._is_human = is_human
         self._model, self._rng = model, rng
         self._detector = PreDetector(config.size, config.above)
         self._people: tuple[Hypothesis, ...] = ()
@@ -115,7 +112,7 @@ class RgbdTracker:
         """Process a new image."""
         view = management.view
         layout = self._detector(view.depth, view.geometry)
-        detections = tuple(self._verified(found, layout, view, frame) for found in layout.detections)
+        detections = tuple(self._verified(found, layout, view) for found in layout.detections)
         people = self._followed(detections, management, frame)
         self._people = self._named(_without_doubles(people))
         self._explanation = RgbdExplanation(layout, detections, self._people)
@@ -128,7 +125,7 @@ class RgbdTracker:
             raise BadInput(f"{DEPTH} and {DEPTH_COLOUR} must show the same pixels, got {sizes}")
         return RgbdView(depth, colour, geometry, self.config.hypotheses.body_m)
 
-    def _verified(self, found: PreDetection, layout: Layout, view: RgbdView, frame: Frame) -> Detection:
+    def _verified(self, found: PreDetection, layout: Layout, view: RgbdView) -> Detection:
         """Classify the window of a pre-detection (SA 4.4.2)."""
         geometry = view.geometry
         kind = range_of(found.z_m, layout.floor, geometry, len(view.depth))
@@ -137,8 +134,6 @@ class RgbdTracker:
             window = window_of(found, kind, layout.floor, geometry)
             score = self._model.look(view.colour, view.depth, found.z_m, window, kind)
         is_verified = not self.config.has_verification or score > self.config.least_score(kind)
-        if not is_verified and self._is_human is not None and score > self.config.least_other_score:
-            is_verified = self._is_human(found, frame)
         ground = layout.floor.slope * found.z_m + layout.floor.offset_m
         top = (found.box[1] - geometry.centre_v) * found.z_m / geometry.focal_px
         head = ground - top

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.geometry.camera_calibration import PinholeCalibration
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame
+from peopleboy.tracker.frame import DEPTH, THERMAL, Floats, Frame
 from peopleboy.tracker.rgbd.depth_view import DepthView
-from peopleboy.tracker.rgbd.observation_model import BINS, Body, bin_of_colour, box_at
+from peopleboy.tracker.rgbd.observation_model import BINS, Body, box_at
 from peopleboy.tracker.rgbd.pre_detection import PreDetection
 from peopleboy.tracker.track import Box
 
@@ -18,19 +18,10 @@ from peopleboy.tracker.track import Box
 WARM: Final = 255.0 * (25.0 - 24.0) / (36.0 - 24.0)
 """Grey from which a surface counts as warm: 25 degC in an image of 24 to 36 degC."""
 
-LEAST_SHARE: Final = 0.3
-"""Share of warm pixels from which an object of human size is a person."""
-
 _WARM_COLUMNS: Final = 10
 _WARM_ROWS: Final = 20
 _REACH_M: Final = 0.5  # from the measured depth, within which pixels belong to the object
 _LEAST_PIXELS: Final = 12
-
-
-def is_warm(found: PreDetection, frame: Frame) -> bool:
-    """Return whether a detection in the depth image is a person, by its temperature."""
-    share = warmth(found, frame)
-    return share is not None and share > LEAST_SHARE
 
 
 def warmth(found: PreDetection, frame: Frame) -> float | None:
@@ -159,49 +150,3 @@ def surface_m(view: DepthView, place_m: Floats) -> float:
 
 def _body(wide_m: float, high_m: float, low_m: float) -> Body:
     return Body(width_m=wide_m, head_m=high_m, low_m=low_m, appearance=_NO_COLOURS)
-
-
-# Colour histogram of a person, from the person's own readings in the depth image.
-
-_COLOUR_ROWS: Final = 24
-_COLOUR_COLUMNS: Final = 11
-_WIDE_M: Final = 0.4
-_LOW_M: Final = 0.25  # above the floor; shoes and shadows are below
-_COLOUR_REACH_M: Final = 0.3
-_LEAST_IN_ROW: Final = 1  # least number of own readings
-_LEAST_ROWS: Final = 0.5  # least share of the rows
-
-
-def colours(place_m: Floats, tall_m: float, frame: Frame) -> Floats | None:
-    """Return the colour histogram (BINS,) of a person at a position (2,) in the robot frame.
-
-    Readings in front of or behind the person, and next to edges, are left out. Every row of the body has the
-    same weight, however much of it is occluded, so that a half-visible person has the same histogram.
-
-    Returns:
-        None if too little of the person is visible, or there is no depth image.
-    """
-    view = view_of(frame)
-    if view is None:
-        return None
-    left, top, width, height = shoulders(view, place_m, _WIDE_M, _LOW_M, tall_m)
-    if width <= 0.0:
-        return None
-    depth, image = frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
-    u = np.rint(left + width * (np.arange(_COLOUR_COLUMNS) + 0.5) / _COLOUR_COLUMNS).astype(np.int64)
-    v = np.rint(top + height * (np.arange(_COLOUR_ROWS) + 0.5) / _COLOUR_ROWS).astype(np.int64)
-    u, v = u[(u >= 0) & (u < depth.shape[1])], v[(v >= 0) & (v < depth.shape[0])]
-    own = np.abs(depth[np.ix_(v, u)] / 1000.0 - surface_m(view, place_m)) < _COLOUR_REACH_M
-    inner = own.copy()
-    inner[:, 1:] &= own[:, :-1]
-    inner[:, :-1] &= own[:, 1:]
-    counts = inner.sum(axis=1)
-    is_seen = counts >= _LEAST_IN_ROW
-    if is_seen.sum() < _LEAST_ROWS * _COLOUR_ROWS:
-        return None
-    inner &= is_seen[:, None]
-    rows, columns = np.nonzero(inner)
-    red, green, blue = (image[v[rows], u[columns]] >> 3).astype(np.int64).T
-    bins = bin_of_colour()[(red << 10) | (green << 5) | blue]
-    found = np.bincount(bins, 1.0 / counts[rows], minlength=BINS)
-    return np.asarray(found / found.sum())

@@ -53,16 +53,6 @@ def test_somebody_is_believed_in_when_verified_so_often_and_keeps_the_number(bir
     assert (x, y) == pytest.approx((4.1, -0.56), abs=0.1)
 
 
-@pytest.mark.parametrize(("least", "told"), [(-100.0, 1), (100.0, 0)])
-def test_what_is_human_by_something_else_must_have_some_of_the_shape(least: float, told: int) -> None:
-    """A block is no human by its window."""
-    config = RgbdConfig(least_far_score=100.0, least_near_score=100.0, least_other_score=least)
-    windows, rng = shipped_windows(sees_depth=True), np.random.default_rng(0)
-    tracker = RgbdTracker(config, windows, rng, lambda *_: True)
-    tracks = watch(tracker, (make_frame(k, {"anna": Block(0.0, 4.0)}) for k in range(3)))
-    assert len(tracks[-1]) == told
-
-
 def test_while_a_slower_camera_takes_no_image_people_walk_on_and_the_robot_may_turn() -> None:
     turn = Odometry(turn_rad=0.01)
     told = []

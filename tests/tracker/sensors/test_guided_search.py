@@ -8,7 +8,7 @@ import pytest
 from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
 from peopleboy.tracker.rgbd.pre_detection import HumanSize, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
-from peopleboy.tracker.sensors.depth_visibility import depth_visibility, is_warm
+from peopleboy.tracker.sensors.depth_visibility import depth_visibility, warmth
 from peopleboy.tracker.sensors.guided_search import search_near
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 
@@ -65,6 +65,8 @@ def detected(frame: Frame) -> PreDetection:
 def test_people_are_told_by_their_heat() -> None:
     someone = Block(0.3, 4.0)
     frame = make_frame(someone)
-    assert is_warm(detected(frame), frame)
+    warm = warmth(detected(frame), frame)
+    assert warm is not None
+    assert warm > 0.3
     for other in (make_frame(someone, grey=COLD), make_frame(someone, has_heat=False)):
-        assert not is_warm(detected(other), other)
+        assert not (warmth(detected(other), other) or 0.0) > 0.3
