@@ -13,7 +13,7 @@ def ended_with(arguments: list[str]) -> object:
     return end.value.code
 
 
-def test_a_full_disk_is_told_in_a_line_and_another_error_is_not_hidden(
+def test_an_error_of_the_system_is_told_in_a_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def write(number: int) -> None:
@@ -25,7 +25,16 @@ def test_a_full_disk_is_told_in_a_line_and_another_error_is_not_hidden(
     assert told.count("\n") == 1
     assert "the disk is full" in told
     monkeypatch.setattr(cli.cli, "main", lambda **_: write(errno.EIO))
-    with pytest.raises(OSError, match=r"\[Errno 5\]"):
+    assert ended_with(["list"]) == cli.FAILED
+    assert capsys.readouterr().err.startswith("peopleboy: [Errno 5]")
+
+
+def test_an_error_that_the_system_does_not_number_is_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
+    def read() -> None:
+        raise OSError("a library's own")
+
+    monkeypatch.setattr(cli.cli, "main", lambda **_: read())
+    with pytest.raises(OSError, match="a library's own"):
         cli.main(["list"])
 
 
