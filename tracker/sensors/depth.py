@@ -39,9 +39,10 @@ from peopleboy.tracker.tracking.sensor import (
     SensorDetections,
     Settings,
     Visibility,
+    level_places,
     no_appearance,
 )
-from peopleboy.tracker.tracking.viewpoint import Position, Viewpoint
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 _USUAL_RATIO: Final = 0.24
 _BEHIND_M: Final = 0.2
@@ -183,7 +184,7 @@ class DepthSensor:
         view = self._view(frame)
         layout = self._detector(view.depth, view.geometry)
         found = [self._classified(one, layout, view, frame) for one in layout.detections]
-        places = self._places(predicted)
+        places = predicted.places_m
         assigned: dict[int, int] = {}
         for row, near in self._guided(places, found, predicted, frame).items():
             assigned[row] = len(found)
@@ -247,13 +248,6 @@ class DepthSensor:
             return 0.0
         return self._config.cold if warm < self._config.least_warm else self._config.warm
 
-    def _places(self, predicted: Predictions) -> Floats:
-        """Return the predicted positions (K, 2) in the robot frame."""
-        origin = predicted.origin_m
-        assert origin is not None
-        mean = predicted.states.mean
-        return np.column_stack([origin[0] + mean[:, 2], origin[1] - mean[:, 0]])
-
     def _guided(
         self, places: Floats, found: Sequence[_Found], predicted: Predictions, frame: Frame
     ) -> dict[int, _Found]:
@@ -291,7 +285,7 @@ class DepthSensor:
         heads = np.array([one.head_m for one in found])
         view = Viewpoint.of(calibration, self._shape, origin, self._motion.toe_m)
         measurement = FloorMeasurement(
-            places_m=_level(at, origin),
+            places_m=level_places(at, origin),
             heads_m=heads,
             deviations_m=np.array([one.deviation_m for one in found]).reshape(-1, 3),
             seen_from_m=view.at_m[[0, 2]],
@@ -322,7 +316,7 @@ class DepthSensor:
         """Read the depth image at each track; None without one."""
         if DEPTH not in frame.images or predicted.origin_m is None:
             return None
-        places = self._places(predicted)
+        places = predicted.places_m
         count, config = len(places), self._config
         hidden, is_present, is_absent = np.full(count, np.nan), np.zeros(count, bool), np.zeros(count, bool)
         for row, place in enumerate(places):
@@ -343,11 +337,6 @@ def measurement_boxes(measurement: FloorMeasurement, view: Viewpoint, count: int
     states = measurement.initiate(range(count))
     states.mean[:, 6] = np.log(np.maximum(measurement.heads_m, 0.5) / STATURE_M)
     return predicted_boxes(states, view, np.full(count, _USUAL_RATIO))
-
-
-def _level(places_m: Floats, origin_m: Position) -> Floats:
-    """Return positions (M, 2) to the right and ahead in the level frame, from the robot frame."""
-    return np.column_stack([origin_m[1] - places_m[:, 1], places_m[:, 0] - origin_m[0]])
 
 
 _ROWS: Final = 32

@@ -27,9 +27,9 @@ from peopleboy.tracker.tracking.sensor import (
     SensorDetections,
     Settings,
     Visibility,
+    level_places,
     no_appearance,
 )
-from peopleboy.tracker.tracking.viewpoint import Position
 
 NEAREST_M: Final = 0.5
 _FARTHEST_BOX_M: Final = 7.5
@@ -54,8 +54,7 @@ class PanoramaSensorConfig:
         gate: squared Mahalanobis distance beyond which a detection belongs to another person.
         wide_m: standard deviation of a prediction from which its neighbourhood is searched, too [m].
         reach_m: half-width of that neighbourhood [m].
-        hidden: covered share of the body from which an undetected person is occluded,
-        blind: and from which a person cannot be detected.
+        blind: covered share of the body from which a person cannot be detected.
         forgotten: log-odds of a track below which it is not searched for.
         newcomers: number of positions searched per image for new people.
         farthest_m: greatest distance of new people [m].
@@ -179,7 +178,7 @@ class PanoramaSensor:
         if PANORAMA not in frame.images or self._scene is None:
             return None
         scene, count = self._scene, len(predicted)
-        polar = _polar(_places(predicted))
+        polar = _polar(predicted.places_m)
         hidden = np.array([scene.hidden_share(*one) for one in polar.tolist()])
         return Visibility(hidden, np.zeros(count, bool), np.zeros(count, bool))
 
@@ -188,7 +187,7 @@ class PanoramaSensor:
         calibration = frame.calibrations.get(PANORAMA)
         if not isinstance(calibration, PanoramaCalibration) or predicted.origin_m is None:
             return None
-        polar = _polar(_places(predicted))
+        polar = _polar(predicted.places_m)
         is_near = polar[:, 1] < _FARTHEST_BOX_M
         return ProjectedBoxes(_boxes(polar, calibration), np.ones(len(polar), bool), is_near)
 
@@ -222,7 +221,7 @@ class PanoramaSensor:
         assigned: dict[int, int] = {}
         if not len(predicted):
             return found, assigned
-        places = _places(predicted)
+        places = predicted.places_m
         polar = _polar(places)
         for row in np.argsort(polar[:, 1], kind="stable").tolist():
             if predicted.log_odds[row] <= self._config.forgotten or polar[row, 1] > _FARTHEST_BOX_M:
@@ -292,10 +291,10 @@ class PanoramaSensor:
         for number, one in enumerate(found):
             colours[number] = one.colours
         measurement = FloorMeasurement(
-            places_m=_level(at, origin),
+            places_m=level_places(at, origin),
             heads_m=np.full(len(found), STATURE_M),
             deviations_m=np.column_stack([across, along, np.full(len(found), _HEAD_SD_M)]),
-            seen_from_m=_level(np.zeros((1, 2)), origin)[0],
+            seen_from_m=level_places(np.zeros((1, 2)), origin)[0],
             floor_m=origin[2],
             config=self._motion,
         )
@@ -304,7 +303,7 @@ class PanoramaSensor:
             boxes=_boxes(_polar(at), scene.calibration),
             scores=np.array([one.evidence for one in found]) - self._config.neutral,
             measurement=measurement,
-            expected=_boxes(_polar(_places(predicted)), scene.calibration),
+            expected=_boxes(_polar(predicted.places_m), scene.calibration),
             pattern=pattern,
             colours=colours,
             assigned=assigned,
@@ -334,14 +333,6 @@ def _error(one: _Located) -> Floats:
     return np.asarray((axes * one.deviation_m**2) @ axes.T)
 
 
-def _places(predicted: Predictions) -> Floats:
-    """Return the predicted positions (K, 2) in the robot frame."""
-    origin = predicted.origin_m
-    assert origin is not None
-    mean = predicted.states.mean
-    return np.column_stack([origin[0] + mean[:, 2], origin[1] - mean[:, 0]])
-
-
 def _spread(states: StateEstimates, row: int) -> Floats:
     """Return the covariance (2, 2) of a predicted position in the robot frame."""
     covariance = states.covariance[row]
@@ -359,8 +350,3 @@ def _boxes(polar: Floats, calibration: PanoramaCalibration) -> Floats:
     return np.array(
         [person_box(bearing, distance, calibration) for bearing, distance in polar.tolist()]
     ).reshape(-1, 4)
-
-
-def _level(places_m: Floats, origin_m: Position) -> Floats:
-    """Return positions (M, 2) to the right and ahead in the level frame, from the robot frame."""
-    return np.column_stack([origin_m[1] - places_m[:, 1], places_m[:, 0] - origin_m[0]])

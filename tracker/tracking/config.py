@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from typing import Final
 
 NEAREST_M: Final = 0.3
+"""Least distance of a person ahead of a camera."""
+
 STATURE_M: Final = 1.72
 """Assumed stature of a person, from which the height of a box gives the distance."""
 

@@ -39,6 +39,13 @@ class Predictions:
     def __len__(self) -> int:
         return len(self.keys)
 
+    @property
+    def places_m(self) -> Floats:
+        """Positions (K, 2) forward and left in the robot frame; needs the origin."""
+        assert self.origin_m is not None
+        mean = self.states.mean
+        return np.column_stack([self.origin_m[0] + mean[:, 2], self.origin_m[1] - mean[:, 0]])
+
     def take(self, rows: Sequence[int], states: StateEstimates | None = None) -> "Predictions":
         """Return some of the tracks, in their states or in those of other states (K)."""
         chosen = np.array(rows, np.intp)
@@ -144,6 +151,11 @@ class SensorExplanations:
     """
 
     parts: tuple[object, ...]
+
+
+def level_places(places_m: Floats, origin_m: Position) -> Floats:
+    """Return positions (M, 2) to the right and ahead in the level frame, from the robot frame."""
+    return np.column_stack([origin_m[1] - places_m[:, 1], places_m[:, 0] - origin_m[0]])
 
 
 def parts_of(explanation: object) -> tuple[object, ...]:

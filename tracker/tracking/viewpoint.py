@@ -13,7 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
-from peopleboy.tracker.tracking.config import STATURE_M
+from peopleboy.tracker.tracking.config import NEAREST_M, STATURE_M
 
 Floats = NDArray[np.float64]
 Position = tuple[float, float, float]
@@ -22,7 +22,6 @@ Position = tuple[float, float, float]
 VIEW_ANGLE_DEG: Final = 44.0
 """Vertical field of view of an uncalibrated camera."""
 
-NEAREST_M: Final = 0.3
 _ROBOT_FROM_LEVEL: Final = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 _LEAST_DEPTH_M: Final = 0.05
 
