@@ -209,7 +209,7 @@ class DepthSensor:
         is_ahead = predicted.states.mean[:, 2] > view.at_m[2] + _BEHIND_M
         rows, columns = self._shape
         is_inside = intersection(boxes, np.array([-0.5, -0.5, columns, rows])) > 0.0
-        return ProjectedBoxes(boxes, is_ahead, is_inside & is_ahead)
+        return ProjectedBoxes(boxes, is_inside & is_ahead)
 
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
         """Remember nothing of tracks."""

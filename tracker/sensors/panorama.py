@@ -189,7 +189,7 @@ class PanoramaSensor:
             return None
         polar = _polar(predicted.places_m)
         is_near = polar[:, 1] < _FARTHEST_BOX_M
-        return ProjectedBoxes(_boxes(polar, calibration), np.ones(len(polar), bool), is_near)
+        return ProjectedBoxes(_boxes(polar, calibration), is_near)
 
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
         """Remember nothing of tracks."""

@@ -253,8 +253,9 @@ class ThermalSensor:
             return None
         _, (rows, columns), view = self._view
         boxes = predicted_boxes(predicted.states, view, predicted.ratio)
+        is_ahead = predicted.states.mean[:, 2] > view.at_m[2]
         is_inside = intersection(boxes, np.array([-0.5, -0.5, columns, rows])) > 0.0
-        return ProjectedBoxes(boxes, np.ones(len(boxes), bool), is_inside)
+        return ProjectedBoxes(boxes, is_inside & is_ahead)
 
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
         """Cut templates of the tracks that the detector found."""

@@ -469,7 +469,7 @@ class PeopleTracker:
         """Return the boxes of a track: a blend of the prediction and the detected box, if there is one."""
         target, boxes = self._targets[row], {}
         for camera, image in images.items():
-            if image is None or not image.is_ahead[row]:
+            if image is None or not image.is_inside[row]:
                 continue
             box = image.boxes[row]
             seen_s, shown = target.shown.get(camera, (-math.inf, box))

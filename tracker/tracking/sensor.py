@@ -133,12 +133,10 @@ class ProjectedBoxes(NamedTuple):
 
     Attributes:
         boxes: (K, 4) [px].
-        is_ahead: (K,) whether each is in front of the camera, so that it has a box.
-        is_inside: (K,) whether some of the box lies inside the image.
+        is_inside: (K,) whether each is in front of the camera, with some of the box inside the image.
     """
 
     boxes: Floats
-    is_ahead: NDArray[np.bool_]
     is_inside: NDArray[np.bool_]
 
 

@@ -81,3 +81,18 @@ def test_the_panorama_is_used_where_it_is_mounted() -> None:
 
 def test_the_panorama_is_not_required() -> None:
     assert make_tracker("fused").cameras == ("thermal", "colour", "depth")
+
+
+@pytest.mark.slow
+def test_people_outside_an_image_have_no_box_in_it() -> None:
+    images = frames("panoramic_round", 300, ("thermal", "colour", PANORAMA))
+    seen = [track for tracks in played("handover", images) for track in tracks]
+    behind = [one for one in seen if one.place is not None and one.place.position_m[0] < 0.0]
+    assert behind
+    assert all(set(one.boxes) == {PANORAMA} for one in behind)
+    rows, columns = images[0].images[THERMAL].shape
+    for left, top, width, height in (one.boxes[THERMAL] for one in seen if THERMAL in one.boxes):
+        assert left < columns
+        assert top < rows
+        assert left + width > 0.0
+        assert top + height > 0.0
