@@ -29,7 +29,9 @@ from peopleboy.tracker.detector.people_trees import shipped_people_trees
 from peopleboy.tracker.detector.rescoring import RescoringNetwork, rescore
 from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.sensors.thermal import Finder, ThermalFinder, ThermalSensor
+from peopleboy.tracker.sensors.people_finder import Finder, ThermalFinder
+from peopleboy.tracker.sensors.scheduled_detector import ScheduledDetector
+from peopleboy.tracker.sensors.thermal import ThermalSensor
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 from peopleboy.tracker.tracking.config import ExistenceConfig, PeopleTrackerConfig, ReidentificationConfig
@@ -126,7 +128,9 @@ class Variant:
     def tracked(self, recording: Recording) -> list[tuple[Track, ...]]:
         """Return the tracks of all frames."""
         find = None if self.stage is None else thermal_finder(self.stage)
-        tracker = PeopleTracker((ThermalSensor(self.config, find),), self.config)
+        tracker = PeopleTracker(
+            (ThermalSensor(self.config, ScheduledDetector(self.config, find)),), self.config
+        )
         seen = recording if self.is_calibrated else recording.uncalibrated()
         return [tracker.update(frame) for frame in seen.frames]
 

@@ -39,6 +39,10 @@ class Detections(NamedTuple):
         """Return the detections of these rows."""
         return Detections(self.box[rows], self.score[rows], self.trees[rows])
 
+    def joined(self, others: "Detections") -> "Detections":
+        """Return these detections, then others."""
+        return Detections(*(np.concatenate(both) for both in zip(self, others, strict=True)))
+
 
 NO_DETECTIONS: Final = Detections.from_trees(np.empty((0, 4)), np.empty(0))
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.boxes import area, cover, intersection, outline
-from peopleboy.tracker.detector.detections import Detections
+from peopleboy.tracker.detector.detections import NO_DETECTIONS, Detections
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.sensors.template import Grey, Template
 from peopleboy.tracker.tracking.config import DetectionScheduleConfig
@@ -59,15 +59,15 @@ class Schedule(NamedTuple):
         found = Detections.from_trees(np.array(list(self.expected.values())).reshape(-1, 4), trees)
         return found.take(np.argsort(-trees, kind="stable"))
 
-    def with_followed(self, found: Detections, known: Sequence[ThermalMemory]) -> Detections:
-        """Return the detector's boxes, then the template boxes with their last rescored scores."""
+    def located(self, known: Sequence[ThermalMemory]) -> Detections:
+        """Return the template boxes with the last rescored scores of their tracks."""
         if not self.followed:
-            return found
+            return NO_DETECTIONS
         these = [known[row] for row in self.followed]
         return Detections(
-            np.concatenate([found.box, np.array(list(self.followed.values()))]),
-            np.concatenate([found.score, [one.score for one in these]]),
-            np.concatenate([found.trees, [one.trees for one in these]]),
+            np.array(list(self.followed.values())),
+            np.array([one.score for one in these]),
+            np.array([one.trees for one in these]),
         )
 
 

@@ -14,7 +14,8 @@ from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
-from peopleboy.tracker.sensors.thermal import ColourFinder, ThermalFinder, ThermalSensor, merge_cameras
+from peopleboy.tracker.sensors.people_finder import ColourFinder, ThermalFinder, merge_cameras
+from peopleboy.tracker.sensors.thermal import ThermalSensor
 from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
 from peopleboy.tracker.tracking.config import ColourDetectionConfig, PeopleTrackerConfig

@@ -12,6 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.sensors.scheduled_detector import ScheduledDetector
 from peopleboy.tracker.sensors.thermal import ThermalSensor
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.tracking.config import AssociationConfig, ExistenceConfig, PeopleTrackerConfig
@@ -84,13 +85,17 @@ def calibrated(boxes: Sequence[Sequence[Box]], rate_hz: float = RATE_HZ) -> Iter
         yield replace(frame, time_s=number / rate_hz, calibrations={THERMAL: CAMERA})
 
 
+def fixed_sensor(find: FixedDetections, config: PeopleTrackerConfig | None = None) -> ThermalSensor:
+    return ThermalSensor(config, ScheduledDetector(config, find))
+
+
 def tracked(
     boxes: Sequence[Sequence[Box]],
     score: float = 3.0,
     clothes: Sequence[tuple[int, int, int]] = (),
     config: PeopleTrackerConfig | None = None,
 ) -> list[tuple[Track, ...]]:
-    tracker = PeopleTracker((ThermalSensor(config, FixedDetections(boxes, score)),), config)
+    tracker = PeopleTracker((fixed_sensor(FixedDetections(boxes, score), config),), config)
     return [tracker.update(frame) for frame in frames(boxes, clothes)]
 
 
@@ -107,7 +112,7 @@ def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
 
 def test_who_is_seen_by_a_known_camera_has_a_place_on_the_floor_and_nobody_else() -> None:
     boxes = [[standing(0.8)]] * 10
-    tracker = PeopleTracker((ThermalSensor(find=FixedDetections(boxes)),))
+    tracker = PeopleTracker((fixed_sensor(FixedDetections(boxes)),))
     (track,) = [tracker.update(frame) for frame in calibrated(boxes)][-1]
     assert track.place is not None
     assert track.place.position_m == pytest.approx((5.0, -0.8), abs=0.02)
@@ -138,7 +143,7 @@ def test_whom_one_image_shows_beyond_doubt_is_told_at_once() -> None:
 
 
 def test_a_camera_that_is_calibrated_is_one_that_is_known() -> None:
-    tracker = PeopleTracker((ThermalSensor(find=FixedDetections([[standing(0.0)]] * 4)),))
+    tracker = PeopleTracker((fixed_sensor(FixedDetections([[standing(0.0)]] * 4)),))
     seen = [tracker.update(frame) for frame in calibrated([[standing(0.0)]] * 4)]
     assert [len(tracks) for tracks in seen] == [0, 1, 1, 1]
 
@@ -166,7 +171,7 @@ def test_who_comes_back_elsewhere_in_the_same_colours_keeps_the_number_and_nobod
 ) -> None:
     away = [[walker(60.0 + 3.0 * i)] for i in range(30)] + [[]] * 60
     back = [[walker(250.0 - 3.0 * i)] for i in range(30)]
-    tracker = PeopleTracker((ThermalSensor(find=FixedDetections(away + back)),))
+    tracker = PeopleTracker((fixed_sensor(FixedDetections(away + back)),))
     shots = [*frames(away, (RED,))]
     shots += [
         Frame(images=frame.images, time_s=frame.time_s + len(away) / RATE_HZ)
@@ -203,7 +208,7 @@ def test_nobody_is_told_outside_the_image() -> None:
 def test_in_five_of_six_images_only_who_was_just_seen_is_looked_for_where_he_is_expected() -> None:
     boxes = [[standing(0.05 * i - 1.0), standing(1.5)] for i in range(20)] + [[standing(1.5)]] * 4
     find = FixedDetections(boxes)
-    tracker = PeopleTracker((ThermalSensor(find=find),))
+    tracker = PeopleTracker((fixed_sensor(find),))
     for frame in calibrated(boxes):
         tracker.update(frame)
     # Nobody is told in the first image; somebody is lost in that with number 20.
@@ -221,7 +226,7 @@ def test_who_stands_apart_is_followed_without_the_detector() -> None:
     find = FixedDetections(
         [box if number in (0, 1, 4, 6, 9, 12) else [] for number, box in enumerate(boxes)], score=4.5
     )
-    tracker, seen = PeopleTracker((ThermalSensor(find=find),)), []
+    tracker, seen = PeopleTracker((fixed_sensor(find),)), []
     for frame, ((left, top, width, height),) in zip(calibrated(boxes), boxes, strict=True):
         image = grey.copy()
         image[round(top) : round(top + height), round(left) : round(left + width)] = person[
@@ -240,7 +245,7 @@ def test_every_image_of_a_slow_camera_or_one_that_is_not_known_is_searched_every
     boxes = [[standing(0.0)]] * 10
     for shots in (calibrated(boxes, rate_hz=2.5), frames(boxes)):
         find = FixedDetections(boxes)
-        tracker = PeopleTracker((ThermalSensor(find=find),))
+        tracker = PeopleTracker((fixed_sensor(find),))
         for frame in shots:
             tracker.update(frame)
         assert find.everywhere == list(range(10))
@@ -250,21 +255,21 @@ def test_nobody_new_is_begun_with_where_only_others_are_looked_for() -> None:
     one, other = standing(-1.0), standing(1.0)
     for later, result in (([[one, other], [one, other], [one]], {1}), ([[one], [one], [one, other]], {1, 2})):
         boxes = [[one]] * 10 + later * 5
-        tracker = PeopleTracker((ThermalSensor(find=FixedDetections(boxes, score=4.5)),))
+        tracker = PeopleTracker((fixed_sensor(FixedDetections(boxes, score=4.5)),))
         seen = [numbers(tracker.update(frame)) for frame in calibrated(boxes)]
         assert set().union(*seen) == result
 
 
 def test_who_is_pointed_out_is_told_at_once() -> None:
     boxes = [[walker(100.0 + 2.0 * i)] for i in range(5)]
-    tracker = PeopleTracker((ThermalSensor(find=FixedDetections(boxes)),))
+    tracker = PeopleTracker((fixed_sensor(FixedDetections(boxes)),))
     tracker.introduce(boxes[0][0])
     seen = [tracker.update(frame) for frame in frames(boxes)]
     assert all({track.id for track in tracks} == {1} for tracks in seen)
 
 
 def test_time_must_go_forward() -> None:
-    tracker = PeopleTracker((ThermalSensor(find=FixedDetections([[], []])),))
+    tracker = PeopleTracker((fixed_sensor(FixedDetections([[], []])),))
     frame = next(frames([[]]))
     tracker.update(frame)
     with pytest.raises(BadInput, match="time_s must go forward"):
@@ -317,7 +322,7 @@ class Occluder:
 def statuses(hidden: float) -> list[list[Status]]:
     """Detect a person for 20 images, and then no more, while something hides a share of the person."""
     boxes = [[standing(0.8)]] * 20 + [[]] * 10
-    sensors = (ThermalSensor(find=FixedDetections(boxes)), Occluder([hidden] * 60))
+    sensors = (fixed_sensor(FixedDetections(boxes)), Occluder([hidden] * 60))
     tracker = PeopleTracker(sensors)
     return [[track.status for track in tracker.update(frame)] for frame in calibrated(boxes)]
 
