@@ -14,6 +14,7 @@ from peopleboy.behaviours.sonar_echoes import (
     EchoMemory,
     EchoMemoryConfig,
     fill_drop_outs,
+    have_jumped,
     remember,
 )
 
@@ -108,7 +109,8 @@ class Guarded:
     """Wrapper that passes sonar ranges without drop-outs to a behaviour, and limits its commands by them.
 
     The robot stops at once when images are missing, people cannot be detected in them, or the sonars have
-    failed; the behaviour is not called then, and resumes afterwards. Without echoes the robot drives only as
+    failed; the behaviour is not called then, and resumes afterwards: after missing images when several came
+    in a row. If the robot was carried, remembered obstacles are forgotten, and the percept says so. Without echoes the robot drives only as
     fast and as far as it can stop within the floor that the last echoes proved free. Until the first echo, it
     creeps.
 
@@ -124,6 +126,9 @@ class Guarded:
         self._passing = EchoMemory()
         self._deafness = SonarFailure()
         self._fault = ""
+        self._raw_m: Points = np.zeros(0)
+        self._is_carried = False
+        self._images_due = 0
         self.is_limited = False
 
     @property
@@ -143,6 +148,7 @@ class Guarded:
 
     def command(self, percept: Percept) -> Command:
         """Return the behaviour's command, limited to a safe one."""
+        self._check_carried(percept)
         self._fault = self._blindness(percept)
         if self._fault:
             self.is_limited = True
@@ -156,7 +162,8 @@ class Guarded:
         if self._fault:
             self.is_limited = True
             return EMERGENCY_STOP
-        wanted = self._behaviour.command(steady)
+        wanted = self._behaviour.command(replace(steady, is_carried=self._is_carried))
+        self._is_carried = False
         self._memory = remember(self._memory, steady, EchoMemoryConfig())
         self._passing = remember(self._passing, steady, PASSING, BESIDE_RAD)
         safe = limit(wanted, steady, self._limits(room_m), self._memory.points, self._passing.points)
@@ -176,9 +183,20 @@ class Guarded:
             highest = min(highest, config.unproven_m_s)
         return replace(config, max_linear_m_s=highest)
 
+    def _check_carried(self, percept: Percept) -> None:
+        """Forget obstacles around a robot that was put down elsewhere."""
+        if have_jumped(self._raw_m, percept.sonar_m):
+            self._is_carried = True
+            self._memory, self._passing = EchoMemory(), EchoMemory()
+            self._recent.clear()
+        self._raw_m = percept.sonar_m
+
     def _blindness(self, percept: Percept) -> str:
-        """Return why the images are unusable; empty if they are usable."""
-        if percept.fault:
-            return percept.fault
-        is_late = not percept.image_age_s <= self._config.latest_image_s
-        return f"no new image for {self._config.latest_image_s:g} s" if is_late else ""
+        """Return why the images are unusable, or were so lately; empty if they are usable."""
+        config = self._config
+        is_late = not percept.image_age_s <= config.latest_image_s
+        if percept.fault or is_late:
+            self._images_due = config.resume_images
+            return percept.fault or f"no new image for {config.latest_image_s:g} s"
+        self._images_due = max(self._images_due - 1, 0)
+        return f"waiting for {config.resume_images} new images in a row" if self._images_due else ""

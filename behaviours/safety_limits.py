@@ -44,6 +44,8 @@ class SafetyConfig:
         tight_turn_rad_s: [rad/s] turn rate with an obstacle at the corner's distance.
         latest_image_s: [s] time without a new image after which the robot stops: at 15 Hz the first missing
             image.
+        resume_images: number of new images in a row after which a robot that stopped for want of them drives
+            again, so that it does not start and stop while a camera loses every few images.
     """
 
     max_linear_m_s: float = 0.8
@@ -65,6 +67,7 @@ class SafetyConfig:
     free_turn_m: float = 0.55
     tight_turn_rad_s: float = 0.3
     latest_image_s: float = 0.05
+    resume_images: int = 3
 
 
 def limit(
