@@ -7,7 +7,7 @@ robot is at rest after a fault that blinds it.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 from typing import Final, Literal, NamedTuple, get_args
@@ -43,6 +43,7 @@ OUT: Final = Path("runs/safety.json")
 DRIVES_M: Final = 1.0
 LASTS_S: Final = 5.0  # duration of a fault
 _CARRIED_M: Final = 0.2  # farther than the robot drives within a frame
+_APART_M: Final = 0.3  # half the width of a person, and more
 _SMALL: Final = {"width_px": 80, "height_px": 60}  # for true tracks, which need no image
 
 
@@ -55,7 +56,7 @@ class Drive:
         fault: kind of its fault; empty for none.
         driven_m: [m] distance driven.
         fastest_s: [s] when it drove fastest, before the last `LASTS_S`.
-        nearest_m: [m] smallest gap between the robot's outline and the middle of a person.
+        nearest_m: [m] smallest gap between the robot's outline and the middle of a person, see `Approach`.
         contacts: what the robot touched.
         speed_m_s: [m/s] speed when the fault began; NaN without a fault.
         stopping_s, stopping_m: [s], [m] from there until the robot was at rest; NaN if it was not within the
@@ -138,7 +139,7 @@ def drive_in(scenario: Scenario, seed: int, name: str) -> Drive:
     tracker = make_named_tracker(name, seed, lambda: world.truth())
     scenario, faults = scenario.mounting(tracker.cameras), scenario.spec.faults
     config, log, rows = scenario.world(seed, "raycast"), ContactLog(), []
-    nearest_m = math.inf
+    approach = Approach()
     with SimulatedWorld(config) as world:
         stage = FaultySensors(world, faults)
         frames = round(scenario.duration_s * config.control_hz)
@@ -146,8 +147,8 @@ def drive_in(scenario: Scenario, seed: int, name: str) -> Drive:
             truth = tick.truth
             log.add(truth)
             rows.append((truth.time_s, truth.robot.x, truth.robot.y, abs(truth.robot_velocity[0])))
-            gaps = [outline_gap(truth.robot, person.position_m) for person in truth.people]
-            nearest_m = min([nearest_m, *gaps])
+            gaps_m = {one.name: outline_gap(truth.robot, one.position_m) for one in truth.people}
+            approach.add(gaps_m)
     path = np.array(rows)
     driven = way_along(path[:, 1:3])
     early = path[: -round(LASTS_S * config.control_hz)]
@@ -156,13 +157,32 @@ def drive_in(scenario: Scenario, seed: int, name: str) -> Drive:
         fault=faults[0].kind if faults else "",
         driven_m=float(driven[-1]),
         fastest_s=float(early[np.argmax(early[:, 3]), 0]),
-        nearest_m=nearest_m,
+        nearest_m=approach.nearest_m,
         contacts=tuple(blamed(log.contacts, faults)),
     )
     if not faults:
         return drive
     stop = measure_stop(path[:, 0], path[:, 3], driven, faults[0])
     return replace(drive, speed_m_s=stop.speed_m_s, stopping_s=stop.after_s, stopping_m=stop.within_m)
+
+
+@dataclass(slots=True)
+class Approach:
+    """Closest approach to people, instant by instant.
+
+    A person who enters the world at the robot's place counts from when the two are apart.
+
+    Attributes:
+        nearest_m: [m] smallest gap; inf for none.
+    """
+
+    nearest_m: float = math.inf
+    _apart: set[str] = field(default_factory=set)
+
+    def add(self, gaps_m: Mapping[str, float]) -> None:
+        """Add the gaps [m] to the people who are present, by name."""
+        self._apart |= {name for name, gap_m in gaps_m.items() if gap_m > _APART_M}
+        self.nearest_m = min([self.nearest_m, *(gaps_m[name] for name in gaps_m if name in self._apart)])
 
 
 def way_along(positions: Floats) -> Floats:

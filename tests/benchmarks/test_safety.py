@@ -7,6 +7,7 @@ import pytest
 from benchmarks.safety import (
     COLUMNS,
     KINDS,
+    Approach,
     Drive,
     blamed,
     drive_of,
@@ -49,6 +50,16 @@ def test_contacts_at_speed_and_a_robot_that_drives_on_blind_are_unsafe():
     assert "not at rest" in failures_in([drive("camera_black", speed_m_s=0.5)])[0]
     assert not failures_in([drive("camera_black", speed_m_s=0.5, stopping_s=0.3)])
     assert not failures_in([drive("wheel_slip", speed_m_s=0.5)])
+
+
+def test_a_person_who_enters_where_the_robot_stands_counts_when_they_are_apart():
+    approach = Approach()
+    for gap_m in (0.0, 0.2):
+        approach.add({"anna": gap_m})
+    assert approach.nearest_m == math.inf
+    for gap_m in (0.5, 0.25, 0.9):
+        approach.add({"anna": gap_m, "bert": 0.0})
+    assert approach.nearest_m == 0.25
 
 
 def test_drives_are_grouped_by_fault_and_summarised():
