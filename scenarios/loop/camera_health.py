@@ -78,9 +78,7 @@ class CameraHealth:
         # Whatever made several cameras fail has ended if one of them works again.
         is_carried = have_jumped(self._sonar_m, observation.sonar_m)
         self._sonar_m = observation.sonar_m
-        may_be_cold = is_carried or bool(
-            self._failed & images.keys() - flat.keys() - faults.keys()
-        )
+        may_be_cold = is_carried or bool(self._failed & images.keys() - flat.keys() - faults.keys())
         dead = {
             name
             for name, image in flat.items()

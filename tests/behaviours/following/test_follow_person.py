@@ -223,9 +223,8 @@ def test_the_guard_notices_that_the_robot_was_carried_also_while_it_is_stopped()
     behaviour, here, there = Standing(), np.linspace(1.0, 3.0, 16), np.linspace(3.0, 1.0, 16)
     guarded = Guarded(behaviour)
     carried = []
-    for frame, (ranges_m, age_s) in enumerate(
-        [(here, 0.0), (here + 0.2, 0.0), (there, STEP_S), (there, 0.0), (there, 0.0), (there, 0.0), (there, 0.0)]
-    ):
+    frames = [(here, 0.0), (here + 0.2, 0.0), (there, STEP_S), *([(there, 0.0)] * 4)]
+    for frame, (ranges_m, age_s) in enumerate(frames):
         behaviour.percept = None
         guarded.command(percept(frame * STEP_S, sonar_m=ranges_m, image_age_s=age_s))
         carried.append(behaviour.percept and behaviour.percept.is_carried)
