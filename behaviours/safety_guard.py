@@ -110,9 +110,10 @@ class Guarded:
 
     The robot stops at once when images are missing, people cannot be detected in them, or the sonars have
     failed; the behaviour is not called then, and resumes afterwards: after missing images when several came
-    in a row. If the robot was carried, remembered obstacles are forgotten, and the percept says so. Without echoes the robot drives only as
-    fast and as far as it can stop within the floor that the last echoes proved free. Until the first echo, it
-    creeps.
+    in a row. If the robot was carried, remembered obstacles are forgotten, and the percept says so.
+
+    Without echoes the robot drives only as fast and as far as it can stop within the floor that the last
+    echoes proved free. Until the first echo, it creeps.
 
     Attributes:
         is_limited: whether the last command was changed.
