@@ -22,6 +22,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios import cli
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.sim.physics.urdf import read_links, read_urdf
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.runs import toy_runs as toy
 
@@ -65,6 +66,26 @@ def test_a_jitter_of_minus_zero_is_none(tmp_path: Path) -> None:
     anna = {"name": "anna", "path": [{"at_m": [2.0, 0.0]}, {"at_m": [3.0, 0.0]}], "speed_jitter": -0.0}
     path.write_text(yaml.safe_dump(SCENE | {"people": [anna]}))
     assert load_scenario(path).people(0)
+
+
+BOX = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
+LINK = "<link name='{0}'>" + BOX + "</link>"
+JOINT = "<joint name='{1}' type='fixed'><parent link='{0}'/><child link='{1}'/></joint>"
+RINGS = {
+    "itself": LINK.format("a") + JOINT.format("a", "a"),
+    "two": LINK.format("a") + LINK.format("b") + JOINT.format("a", "b") + JOINT.format("b", "a"),
+    "beside a root": "".join(map(LINK.format, "abc")) + JOINT.format("c", "b") + JOINT.format("b", "c"),
+    "chain": "".join(JOINT.format(n, n + 1) for n in range(1000)) + LINK.format(1000),
+}
+
+
+@pytest.mark.parametrize("links", RINGS.values(), ids=RINGS)
+def test_links_in_a_ring_or_an_endless_chain_are_refused(links: str, tmp_path: Path) -> None:
+    path = tmp_path / "x.urdf"
+    path.write_text(f"<robot name='r'>{links}</robot>")
+    for read in (read_urdf, read_links):
+        with pytest.raises(BadInput, match=r"x\.urdf cannot be read as a URDF: (links .* ring|more than)"):
+            read(path)
 
 
 @pytest.mark.parametrize("size", ["nan inf 0.5", "-1 -1 -1", "0 1 1", ""])

@@ -19,12 +19,16 @@ from peopleboy.scenarios.footage.options import (
     colour_picture,
 )
 from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
-from peopleboy.tracker.footage.grey import Radiometry, check_plausible, grey_maker
+from peopleboy.tracker.footage.grey import Radiometry, are_bytes_swapped, check_plausible, grey_maker
 from peopleboy.tracker.footage.image_sequences import PictureFolder, open_footage
+from peopleboy.tracker.footage.picture_names import pictures_in
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
 from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, rate_in
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.trackers import BY_CONTRAST
+
+_COLOUR_FOLDERS: Final = ("rgb", "color")
+"""Where RGB-D benchmarks keep the colour images beside the depth images."""
 
 
 class RgbdViews:
@@ -47,8 +51,9 @@ class RgbdViews:
         all_notes = [*rgbd.camera.notes, *(note for folder in folders for note in folder.notes)]
         self.notes = list(dict.fromkeys(all_notes))
         self._pairs = pair_up(*(folder.paths for folder in folders))
+        self.notes += [self._pairs.note] if self._pairs.note else []
         self.expected = len(self._pairs.colour)
-        self.numbers = folders[0].numbers
+        self.numbers = folders[0].numbers if self.expected == len(folders[0].paths) else None
         if options.rate_hz is not None and self._pairs.time_s is not None:
             raise BadInput("--rate-hz: the images' file names contain their times; leave it out")
         self.rate_hz = options.rate_hz or self._pairs.rate_hz or DEFAULT_RATE_HZ
@@ -125,7 +130,8 @@ def _folder(path: Path, image: str) -> PictureFolder:
         raise BadInput(f"{path}: folder not found; colour images and their depth need one folder each")
     if (path / "run.json").is_file():
         raise BadInput(f"{path}: is a run; give {path / image}")
-    return PictureFolder(path, path.name)
+    inner = [path / name for name in _COLOUR_FOLDERS if image == DEPTH_COLOUR and (path / name).is_dir()]
+    return PictureFolder(inner[0] if inner and not pictures_in(path) else path, path.name)
 
 
 COLOUR_TRACKER: Final = "colour"
@@ -205,6 +211,11 @@ class ThermalViews:
             yield thermal, picture
 
     def _note_counts(self, thermal: NDArray[Any]) -> None:
+        if are_bytes_swapped(thermal):
+            self._footage.notes.append(
+                "the two bytes of each 16-bit count seem to be exchanged, as in PNG files of some cameras; "
+                "exchange them before, for example by numpy.ndarray.byteswap"
+            )
         if thermal.dtype != np.uint8 and not self._options.radiometry.is_known:
             self._footage.notes.append(
                 f"{thermal.dtype} images without --scale: temperatures are unknown, "

@@ -63,6 +63,7 @@ def find_model(path: Path | str) -> Path:
 # Where PyBullet searches for files named in a URDF, relative to the URDF's folder.
 MESH_PLACES = (".", "..", "../..")
 _GREY = (0.5, 0.5, 0.5)
+_DEEPEST = 200  # links in a chain: the pose of a link is that of its parent and more
 # Keywords for materials in OBJ files, and for textures in material files; the name is the line's last word.
 _NAMED = {".obj": r"^mtllib\s+(?:.*\s)?(\S+)\s*$", ".mtl": r"^(?:map_\w+|bump)\s+(?:.*\s)?(\S+)\s*$"}
 
@@ -100,7 +101,7 @@ def read_urdf(path: Path) -> tuple[UrdfShape, ...]:
         BadInput: the file is not a URDF, or has an invalid shape or number.
     """
     root = parse_urdf(path)
-    joints = {link_named(joint, "child"): joint for joint in root.iterfind("./joint")}
+    joints = _read_joints(root, path)
     colours = {m.get("name", ""): _rgb(m) for m in root.iterfind("./material") if m.find("color") is not None}
     try:
         return tuple(
@@ -108,7 +109,7 @@ def read_urdf(path: Path) -> tuple[UrdfShape, ...]:
             for link in root.iterfind("./link")
             for visual in link.findall("./visual") or link.findall("./collision")  # like PyBullet
         )
-    except (KeyError, ValueError, RecursionError) as error:
+    except (KeyError, ValueError) as error:
         raise BadInput(f"{path} cannot be read as a URDF: {error}") from error
 
 
@@ -126,9 +127,8 @@ def files_of(urdf: Path) -> Iterator[Path]:
     """Yield a URDF and all files that it needs: meshes, their materials and textures."""
     yield urdf
     for part in parse_urdf(urdf).iter():
-        name = part.get("filename", "").removeprefix("package://")
-        places = [urdf.parent / place / name for place in MESH_PLACES] if name else []
-        for path in [path for path in places if path.is_file()][:1]:
+        name = part.get("filename", "")
+        for path in [path for path in _places_of(urdf, name) if name and path.is_file()][:1]:
             yield path
             yield from _named_by(path)
 
@@ -156,6 +156,26 @@ def parse_urdf(path: Path) -> ElementTree.Element:
         return ElementTree.fromstring(re.sub(r"<\?xml.*?\?>", "", path.read_text("utf-8"), count=1))
     except (OSError, UnicodeDecodeError, ElementTree.ParseError) as error:
         raise BadInput(f"{path} cannot be read as a URDF: {error}") from error
+
+
+def _read_joints(root: ElementTree.Element, path: Path) -> Joints:
+    """Read the joints by child link, which must form trees."""
+    joints = {link_named(joint, "child"): joint for joint in root.iterfind("./joint")}
+    depths = {}
+    for child in joints:
+        chain = [child]
+        while (parent := link_named(joints[chain[-1]], "parent")) in joints and parent not in depths:
+            if parent in chain:
+                ring = ", ".join(chain[chain.index(parent) :][:4])
+                raise BadInput(f"{path} cannot be read as a URDF: links hang on each other in a ring: {ring}")
+            chain.append(parent)
+            if len(chain) > _DEEPEST:
+                break
+        depth = depths.get(parent, 0)
+        depths.update({link: depth + above for above, link in enumerate(reversed(chain), start=1)})
+        if depths[child] > _DEEPEST:
+            raise BadInput(f"{path} cannot be read as a URDF: more than {_DEEPEST} links in a chain")
+    return joints
 
 
 def link_pose(link: str, joints: Joints) -> tuple[Numbers, Rotation]:
@@ -226,11 +246,16 @@ def _scale(mesh: ElementTree.Element) -> Vector:
 
 
 def _find_mesh(urdf: Path, name: str) -> Path:
-    places = [urdf.parent / place / name.removeprefix("package://") for place in MESH_PLACES]
-    found = [place.resolve() for place in places if place.is_file()]
+    found = [place.resolve() for place in _places_of(urdf, name) if place.is_file()]
     if not found:
-        raise ValueError(f"mesh {name!r} not found")
+        raise ValueError(f"mesh {name[:80]!r} not found")
     return found[0]
+
+
+def _places_of(urdf: Path, name: str) -> list[Path]:
+    """Return where a file that a URDF names may be, like PyBullet."""
+    plain = name.removeprefix("package://").removeprefix("file://")
+    return [urdf.parent / place / plain for place in MESH_PLACES]
 
 
 def _origin(element: ElementTree.Element) -> tuple[Numbers, Rotation]:
@@ -311,12 +336,14 @@ def read_links(path: Path, scale: float = 1.0) -> tuple[UrdfLink, ...]:
 @cache
 def _read_links(path: Path) -> tuple[UrdfLink, ...]:
     root = parse_urdf(path)
-    joints = {link_named(joint, "child"): joint for joint in root.iterfind("./joint")}
+    joints = _read_joints(root, path)
     links = {link.get("name", ""): link for link in root.iterfind("./link")}
     try:
-        first = next(name for name in links if name not in joints)
+        first = next((name for name in links if name not in joints), None)
+        if first is None:
+            raise ValueError("no link is the root")
         return tuple(_read_link(links[name], joints, path) for name in _in_order(first, joints))
-    except (KeyError, ValueError, RecursionError, StopIteration) as error:
+    except (KeyError, ValueError) as error:
         raise BadInput(f"{path} cannot be read as a URDF: {error}") from error
 
 

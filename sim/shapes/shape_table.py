@@ -113,7 +113,10 @@ def _triangles(shape: VisualShape) -> NDArray[np.float64]:
     """Return the triangles (T, 3, 3) of a mesh in its part's frame; none for other shapes."""
     if shape.kind != ShapeKind.MESH or shape.mesh is None:
         return np.zeros((0, 3, 3))
-    return transform(shape.part_from_shape, load_triangles(shape.mesh) * np.array(shape.size))
+    triangles = load_triangles(shape.mesh) * np.array(shape.size)
+    # Mirroring turns outsides into insides, unless the order of the corners is reversed too.
+    is_mirrored = np.prod(np.sign(shape.size)) < 0.0
+    return transform(shape.part_from_shape, triangles[:, ::-1] if is_mirrored else triangles)
 
 
 def _extent(triangles: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -5,7 +5,10 @@ class 1 (person) only. Of the other classes of MOT16 to MOT20, distractors are r
 columns are missing, or -1 for unknown, all lines are counted and visible people. Lines of ten numbers end
 with a world position instead of class and visible fraction, as in MOT15.
 
-Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position).
+Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position). The last three may
+be missing.
+
+Values may be separated by white space instead, as in some trackers' results.
 
 An empty file is a sequence without people, or a tracker without tracks.
 """
@@ -27,6 +30,8 @@ DISTRACTORS = (2, 7, 8, 12)  # person on vehicle, static person, distractor, ref
 CLASSES = range(1, 14)
 WIDTHS = range(6, 11)
 """Allowed numbers of values per line of truth."""
+TRACK_WIDTHS = range(7, 11)
+"""Allowed numbers of values per line of results."""
 
 _PLACED = 10  # values of a line with a position, of which the first 7 are read
 _UNKNOWN = -1.0
@@ -91,8 +96,7 @@ def read_tracks(path: Path) -> TrackBoxes:
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
     """
-    columns = TRACKS_COLUMNS.count(",") + 1
-    table = _read_table(path, TRACKS_COLUMNS, range(columns, columns + 1))
+    table = _read_table(path, TRACKS_COLUMNS, TRACK_WIDTHS)
     return _build(path, TrackBoxes, table, confidence=table[:, 6])
 
 
@@ -135,7 +139,7 @@ def _read_table(path: Path, names: str, widths: range) -> Floats:
         raise BadInput(f"{path}: cannot be read as MOTChallenge text: {reason}") from error
     while lines and not lines[-1].strip():
         lines.pop()  # the newline after the last line, and trailing empty lines
-    count = len(lines[0].split(",")) if lines else widths[-1]
+    count = len(_cells_of(lines[0])) if lines else widths[-1]
     if count in widths:
         widths = range(count, count + 1)
     table = [_parse_line(line, names, widths, f"{path}:{number}") for number, line in enumerate(lines, 1)]
@@ -143,7 +147,7 @@ def _read_table(path: Path, names: str, widths: range) -> Floats:
 
 
 def _parse_line(line: str, names: str, widths: range, where: str) -> list[float]:
-    cells = line.split(",")
+    cells = _cells_of(line)
     if len(cells) not in widths:
         wanted = f"{widths[0]} to {widths[-1]}" if len(widths) > 1 else f"{widths[0]}"
         raise BadInput(
@@ -153,6 +157,10 @@ def _parse_line(line: str, names: str, widths: range, where: str) -> list[float]
         return [float(cell) for cell in cells]
     except ValueError:
         raise BadInput(f"{where}: must be numbers ({names}), got {line[:60]!r}") from None
+
+
+def _cells_of(line: str) -> list[str]:
+    return line.split(",") if "," in line else line.split()
 
 
 def _build(path: Path, kind: type[Kind], table: Floats, **others: Floats) -> Kind:

@@ -1,4 +1,4 @@
-"""Matching of colour and depth pictures, by their order or by the timestamps in their names."""
+"""Matching of colour and depth pictures, by their order, or by the numbers or timestamps in their names."""
 
 import math
 import re
@@ -11,9 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.picture_names import numbers_in_a_row, numbers_of
 from peopleboy.tracker.footage.read_picture import Raw
 
 Floats = NDArray[np.float64]
+
+TUM_APART_S: Final = 0.02
+"""Greatest difference in time of a pair in the TUM RGB-D benchmark."""
 
 STAMP: Final = re.compile(r"\d+\.\d+")
 """Seconds with decimals, as in the TUM RGB-D benchmark."""
@@ -28,40 +32,47 @@ class PicturePairs:
         depth: N files; a file may occur twice.
         time_s: (N,) since the first; None if the names are not timestamps.
         rate_hz: pairs per second, from the median interval; None if the names are not timestamps.
+        note: which colour pictures were left out, for want of depth; empty if none.
     """
 
     colour: Sequence[Path]
     depth: Sequence[Path]
     time_s: Floats | None = None
     rate_hz: float | None = None
+    note: str = ""
 
 
 def pair_up(colour: Sequence[Path], depth: Sequence[Path]) -> PicturePairs:
     """Return the depth picture of each colour picture: the nearest in time if all names are timestamps.
+
+    A few colour pictures without depth are left out.
 
     Args:
         colour: at least one file, in order.
         depth: at least one file, in order.
 
     Raises:
-        BadInput: numbers of pictures differ, two have the same time, or a depth picture differs from its
-            colour picture by more than half of a picture's interval.
+        BadInput: numbers of pictures differ, two have the same time, or half of the colour pictures have no
+            depth picture within half of a picture's interval.
     """
     times, depth_times = time_stamps(colour), time_stamps(depth)
     if times is None or depth_times is None:
-        return _in_order(colour, depth)
+        return _by_number(colour, depth) or _in_order(colour, depth)
     by_time, depth_by_time = np.argsort(times), np.argsort(depth_times)
     colour, depth = [colour[k] for k in by_time], [depth[k] for k in depth_by_time]
     times, depth_times = times[by_time], depth_times[depth_by_time]
     step_s = _step(colour, times) if len(times) > 1 else None
     nearest = _nearest(depth_times, times)
-    if step_s is not None:
-        _check_near(colour, np.abs(depth_times[nearest] - times), step_s / 2)
+    most_s = math.inf if step_s is None else max(step_s / 2, TUM_APART_S)
+    away_s = np.abs(depth_times[nearest] - times)
+    kept = np.flatnonzero(away_s <= most_s + 1e-6)  # names have no more decimals
+    _check_near(colour, away_s, kept, most_s)
     return PicturePairs(
-        colour=colour,
-        depth=[depth[k] for k in nearest],
-        time_s=times - times[0],
+        colour=[colour[k] for k in kept],
+        depth=[depth[nearest[k]] for k in kept],
+        time_s=times[kept] - times[kept[0]],
         rate_hz=None if step_s is None else 1.0 / step_s,
+        note=_left_out(colour, kept.tolist()),
     )
 
 
@@ -70,6 +81,28 @@ def time_stamps(paths: Sequence[Path]) -> Floats | None:
     if not all(STAMP.fullmatch(path.stem) for path in paths):
         return None
     return np.array([float(path.stem) for path in paths])
+
+
+def _by_number(colour: Sequence[Path], depth: Sequence[Path]) -> PicturePairs | None:
+    """Pair pictures of equal numbers; None if names have none, most differ, or none is missing."""
+    number, depth_number = numbers_of(colour), numbers_of(depth)
+    if number is None or depth_number is None or len(set(depth_number)) < len(depth):
+        return None
+    if len(colour) == len(depth) and numbers_in_a_row(colour) and numbers_in_a_row(depth):
+        return None
+    places = {each: place for place, each in enumerate(depth_number)}
+    kept = [k for k, each in enumerate(number) if each in places]
+    if 2 * len(kept) <= max(len(colour), len(depth)):
+        return None
+    found = [depth[places[number[k]]] for k in kept]
+    return PicturePairs([colour[k] for k in kept], found, note=_left_out(colour, kept))
+
+
+def _left_out(colour: Sequence[Path], kept: Sequence[int]) -> str:
+    missing = sorted(set(range(len(colour))) - set(kept))
+    if not missing:
+        return ""
+    return f"{colour[missing[0]]}: has no depth picture; skipped: {len(missing)} of {len(colour)} pictures"
 
 
 def _in_order(colour: Sequence[Path], depth: Sequence[Path]) -> PicturePairs:
@@ -98,15 +131,14 @@ def _step(paths: Sequence[Path], times: Floats) -> float:
     return float(np.median(steps))
 
 
-def _check_near(paths: Sequence[Path], away_s: Floats, most_s: float) -> None:
-    is_far = away_s > most_s + 1e-6  # names have no more decimals
-    if not is_far.any():
+def _check_near(paths: Sequence[Path], away_s: Floats, kept: NDArray[np.int64], most_s: float) -> None:
+    count = len(paths) - len(kept)
+    if 2 * count < len(paths):
         return
-    first = int(np.argmax(is_far))
+    first = int(np.setdiff1d(np.arange(len(paths)), kept)[0])
     raise BadInput(
-        f"{paths[first]}: has no depth picture within {most_s:.3f} s, half a picture's time; the nearest is "
-        f"{away_s[first]:.3f} s away; take out what has none (without depth: {is_far.sum()} of {len(paths)} "
-        "pictures)"
+        f"{paths[first]}: has no depth picture within {most_s:.3f} s, the nearest is {away_s[first]:.3f} s "
+        f"away; take out what has none (without depth: {count} of {len(paths)} pictures)"
     )
 
 

@@ -14,9 +14,11 @@ from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.mot_files import WIDTHS, read_rows, truth_of
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.image_sequences import beside
+from peopleboy.wording import counted
 
 # Implausible truth causes a note rather than an error: it may be correct.
 
+_VEHICLE: Final = 6  # class of MOTChallenge
 _MOST_OUTSIDE: Final = 0.1  # share of boxes that are entirely beyond the pictures' right or lower edge
 _LEAST_SPREAD: Final = 0.25  # of the width: a smaller spread of boxes may be real
 
@@ -227,10 +229,27 @@ def _of_everybody(path: Path, frames: int | None, numbers: range | None) -> Give
     if len(rows) and not rows[:, 8].any() and not is_own:
         rows[:, 8] = 1.0
         notes.append(f"{path}: the visible fraction is 0 in all lines; it is taken as missing")
+    notes += [] if is_own else _doubts_about_rows(rows, path)
     truth = truth_of(path, rows)
     if frames is not None and truth.last_frame > frames:
         raise BadInput(f"{path}: must end with frame {frames}, the last picture, got {truth.last_frame}")
     return GivenTruth(truth, is_single=False, path=path, notes=tuple(notes))
+
+
+def _doubts_about_rows(rows: Floats, path: Path) -> list[str]:
+    """Return notes on rows (N, 9) that benchmarks score in another way."""
+    notes = []
+    if hidden := int(np.count_nonzero((rows[:, 6] > 0.0) & (rows[:, 8] == 0.0))):
+        notes.append(
+            f"{path}: {counted(hidden, 'box', 'boxes')} of visible fraction 0 not scored; MOTChallenge does "
+            "score them, and so does this command without that column"
+        )
+    if (rows[:, 7] == _VEHICLE).any():
+        notes.append(
+            f"{path}: class {_VEHICLE} (non-motorised vehicle) is ignored as in MOT17; in MOT20 it is a "
+            "distractor, as class 8 is here"
+        )
+    return notes
 
 
 def _box(line: str, where: str) -> NDArray[np.float64]:

@@ -78,6 +78,7 @@ CLUTTER_GREY: Final = 11.0
 MEMORY_FRAMES: Final = 30
 NOISE_SPAN: Final = 40.0  # least span in standard deviations of the noise
 LEAST_SIDE_PX: Final = 24
+_SWAPPED: Final = 8.0  # ratio of the mean steps between neighbours from which bytes are exchanged
 _ALIKE: Final = 12  # greatest difference between channels of a grey picture, after a lossy codec
 
 
@@ -180,6 +181,22 @@ def spanned(values: NDArray[np.float32], span: tuple[float, float] = ROBOT_SPAN_
 
 def _whole_grey(grey: NDArray[np.float32]) -> Grey:
     return np.asarray(np.clip(np.rint(grey), 0, 255), dtype=np.uint8)
+
+
+def are_bytes_swapped(counts: NDArray[Any]) -> bool:
+    """Return whether neighbours in 16-bit counts (H, W) are far more alike with the bytes of each exchanged.
+
+    Some cameras' PNG files have the bytes in the wrong order.
+    """
+    if counts.dtype != np.uint16 or counts.ndim != 2:
+        return False
+    if min(int(np.ptp(counts & 0xFF)), int(np.ptp(counts >> 8))) == 0:
+        return False
+
+    def step(values: NDArray[Any]) -> float:
+        return float(np.abs(np.diff(values.astype(np.int32), axis=1)).mean())
+
+    return step(counts) > _SWAPPED * step(counts.byteswap())
 
 
 class AutomaticGrey:

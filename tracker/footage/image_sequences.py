@@ -21,10 +21,12 @@ from peopleboy.tracker.footage.read_picture import Raw, count_pages, read_pages,
 from peopleboy.wording import counted
 
 OF_A_RUN: Final = "thermal"
-INNER: Final = ("img", "img1", "color", OF_A_RUN)
+OF_COLOUR: Final = "color"
+INNER: Final = ("img", "img1", OF_COLOUR, OF_A_RUN)
 """Where benchmark sequences and runs keep their pictures."""
 PAGED: Final = (".tif", ".tiff")
 """Files that may hold several pictures."""
+_LAST: Final = 0.9  # share of a video's length from which its last picture is near the end
 _TEXT: Final = b"ansi"
 _DEEP_GREY: Final = b"Y1\x00"  # followed by the number of bits, in FFmpeg's table of raw formats
 
@@ -91,7 +93,12 @@ def _home_of_pictures(path: Path) -> Path:
             raise BadInput(f"{path}: this run has no folder {OF_A_RUN}; `peopleboy run --frames` writes one")
         return path / OF_A_RUN
     inner = next((path / name for name in INNER if (path / name).is_dir()), path)
-    return path if pictures_in(path) else inner
+    if pictures_in(path):
+        return path
+    others = [] if inner.name != OF_COLOUR else [other for other in _folders_in(path) if other != inner]
+    if others:
+        raise BadInput(f"{path}: has pictures in {inner.name}/ and {others[0].name}/; give one of the two")
+    return inner
 
 
 class PictureFolder:
@@ -175,18 +182,30 @@ class Video:
 
     def __iter__(self) -> Iterator[Raw]:
         """Decode one picture after the other, RGB."""
-        film, count = self._open(), 0
+        film, count, last_s = self._open(), 0, 0.0
         try:
             while True:
                 is_read, picture = film.read()
                 if not is_read:
                     break
                 count += 1
+                last_s = film.get(cv2.CAP_PROP_POS_MSEC) / 1000.0
                 yield np.asarray(picture[..., ::-1])
         finally:
             film.release()
         if count < self.expected:
-            self.notes.append(f"{self.path}: ended after {count} of {self.expected} pictures")
+            self.notes.append(f"{self.path}: {self._describe_end(count, last_s)}")
+
+    def _describe_end(self, count: int, last_s: float) -> str:
+        """Return why there are fewer pictures than the length of the video and its frame rate suggest."""
+        lasts_s = self.expected / self.rate_hz if self.rate_hz else 0.0
+        if last_s < _LAST * lasts_s or count < 2:
+            return f"ended after {count} of {self.expected} pictures"
+        rate_hz = (count - 1) / last_s
+        return (
+            f"has {count} pictures at uneven times, {rate_hz:.3g} a second on average, which are taken for "
+            f"evenly spaced ones; give --rate-hz {rate_hz:.3g}, as its frame rate says {self.rate_hz:g}"
+        )
 
     def _open(self) -> cv2.VideoCapture:
         # Hides FFmpeg's own messages about damaged files; OpenCV reads the variable when opening.
@@ -207,7 +226,12 @@ def _code(film: cv2.VideoCapture, which: int) -> bytes:
 
 def _where_else(folder: Path) -> str:
     """Return which inner folder has pictures, or the supported formats."""
-    for inner in sorted(path for path in folder.iterdir() if path.is_dir()):
-        if count := len(pictures_in(inner)):
-            return f"but {inner.name}/ has {count}; give {inner}"
+    for inner in _folders_in(folder):
+        return f"but {inner.name}/ has {len(pictures_in(inner))}; give {inner}"
     return f"wanted are {', '.join(SUFFIXES)}"
+
+
+def _folders_in(folder: Path) -> list[Path]:
+    """Return the inner folders with pictures, those of depth last."""
+    inner = [path for path in folder.iterdir() if path.is_dir() and pictures_in(path)]
+    return sorted(inner, key=lambda path: (path.name.startswith("depth"), path.name))

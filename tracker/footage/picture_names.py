@@ -9,6 +9,7 @@ from typing import Final
 
 from peopleboy.bad_input import BadInput
 
+_TIME: Final = re.compile(r"\d+\.\d+")  # seconds
 SUFFIXES: Final = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp")
 
 
@@ -36,7 +37,7 @@ def pictures_in(folder: Path) -> list[Path]:
 
 def numbers_in_a_row(paths: Sequence[Path]) -> range | None:
     """Return the numbers of pictures whose names differ only in consecutive numbers, or None."""
-    numbers = _numbers(paths)
+    numbers = numbers_of(paths)
     if numbers is None:
         return None
     row = range(numbers[0], numbers[0] + len(numbers))
@@ -49,8 +50,8 @@ def jumps(paths: Sequence[Path]) -> list[tuple[int, int]]:
     Names must differ in one number alone, which mostly grows by the same step; others, such as times, have no
     gaps.
     """
-    numbers = _numbers(paths)
-    if numbers is None:
+    numbers = numbers_of(paths)
+    if numbers is None or all(_TIME.fullmatch(path.stem) for path in paths):
         return []
     neighbours = list(pairwise(numbers))
     step, count = Counter(after - before for before, after in neighbours).most_common(1)[0]
@@ -59,7 +60,7 @@ def jumps(paths: Sequence[Path]) -> list[tuple[int, int]]:
     return [(before, after) for before, after in neighbours if after - before > step]
 
 
-def _numbers(paths: Sequence[Path]) -> list[int] | None:
+def numbers_of(paths: Sequence[Path]) -> list[int] | None:
     """Return the one number in which names differ; None if they differ otherwise, or not at all."""
     parts = [re.split(r"(\d+)", path.stem) for path in paths]
     if len({len(each) for each in parts}) != 1:

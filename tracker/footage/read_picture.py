@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
@@ -16,6 +17,7 @@ from peopleboy.wording import counted
 Raw = NDArray[Any]  # (H, W) uint8, uint16 or float32, or (H, W, 3) uint8 RGB
 
 _SIXTEEN_BIT: Final = ("I;16", "I;16B", "I;16L", "I")
+_TIFF_STARTS: Final = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 _KIND_OF_PAGE: Final = 254  # tag of TIFF, NewSubfileType
 _NO_PAGE: Final = 1 | 4  # of its bits: a smaller copy of another page, a mask
 
@@ -121,13 +123,22 @@ def _what_is_wrong(path: Path, error: Exception) -> str:
         return f"cannot be read: {error.strerror}"
     if path.stat().st_size == 0:
         return "is empty; remove it, or repair it"
+    if isinstance(error, UnidentifiedImageError) and _is_tiff(path):
+        return "is a TIFF of a kind that is not read, such as 64-bit floats; convert it to 32-bit floats"
     if isinstance(error, UnidentifiedImageError):
         return f"is no {path.suffix[1:].upper()}, or damaged; remove it, or repair it"
     return f"cannot be read as a picture ({error}); remove it, or repair it"
 
 
+def _is_tiff(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(4) in _TIFF_STARTS
+
+
 def _as_array(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
     mode = opened.mode
+    if mode == "RGB" and _has_deep_colours(opened):
+        return _deep_grey(opened, path, notes)
     if mode in _SIXTEEN_BIT:
         counts = np.array(opened)
         if counts.min() < 0 or counts.max() > 65535:
@@ -140,6 +151,20 @@ def _as_array(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
     if mode in ("RGBA", "LA", "PA"):
         _note(notes, "pictures have an opacity channel; it is left out")
     return np.array(opened.convert("L" if mode == "LA" else "RGB"))
+
+
+def _has_deep_colours(opened: Image.Image) -> bool:
+    """Return whether a PNG has 16 bits a channel, of which Pillow reads 8."""
+    return opened.format == "PNG" and any("16" in str(tile[3]) for tile in opened.tile)
+
+
+def _deep_grey(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
+    """Return the counts of three equal channels of 16 bits; otherwise 8 bits of each."""
+    deep = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    if deep is not None and deep.dtype == np.uint16 and (deep == deep[..., :1]).all():
+        return np.ascontiguousarray(deep[..., 0])
+    _note(notes, "pictures have 16 bits a channel, of which 8 are read")
+    return np.array(opened)
 
 
 def _finite(picture: Raw, where: str) -> Raw:

@@ -13,7 +13,7 @@ from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.physics.urdf import find_model
 from peopleboy.sim.places.extent import mesh_extent
 from peopleboy.sim.rendering.renderer import Scene, render
-from peopleboy.sim.shapes.shape_table import make_shape_table
+from peopleboy.sim.shapes.shape_table import as_given, make_shape_table
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind, load_triangles
 from tests.helpers.calls.refused import refused
 
@@ -30,6 +30,15 @@ def test_every_format_gives_the_triangles_that_were_written(ending: str, tmp_pat
     # The divergence theorem: outward faces give the volume.
     assert np.sum(a * np.cross(b, c)) / 6.0 == pytest.approx(6.0)
     assert not triangles.flags.writeable
+
+
+@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (-1.0, 1.0, 1.0), (-1.0, -1.0, -1.0), (-1.0, 1.0, -2.0)])
+def test_a_mirrored_mesh_keeps_its_outside_outside(size: tuple[float, float, float], tmp_path: Path) -> None:
+    file = tmp_path / "box.stl"
+    trimesh.creation.box(extents=(1.0, 2.0, 3.0)).export(file)
+    shape = as_given(Shape(kind=ShapeKind.MESH, size=size, mesh=file), 0)
+    a, b, c = np.moveaxis(make_shape_table([shape]).triangles, 1, 0)
+    assert np.sum(a * np.cross(b, c)) / 6.0 == pytest.approx(6.0 * abs(np.prod(size)))
 
 
 @pytest.mark.parametrize("content", ["", "v 0 0 0\nv 1 0 0\n", "v 0 0 0\nv 1 0 0\nv nan 1 0\nf 1 2 3\n"])

@@ -55,18 +55,44 @@ def test_decimals_are_those_of_a_number_not_a_count() -> None:
 
 
 @pytest.mark.parametrize(("number", "away_s"), [(0, 0.06), (8, -0.06), (8, 0.06)])
-def test_depth_that_is_off_by_more_than_half_a_pictures_time_is_refused(number: int, away_s: float) -> None:
+def test_depth_that_is_off_by_more_than_half_a_pictures_time_is_left_out(number: int, away_s: float) -> None:
     colour = [f"{10 + k / 10:.3f}" for k in range(9)]
     depth = [f"{10 + k / 10 + away_s * (k == number):.3f}" for k in range(9)]
-    with refused(f"rgb/{colour[number]}.png", "0.050 s", "0.060 s"):
-        pair_up(paths("rgb", *colour), paths("depth", *depth))
+    pairs = pair_up(paths("rgb", *colour), paths("depth", *depth))
+    kept = [k for k in range(9) if k != number]
+    assert stems(pairs.colour) == [colour[k] for k in kept]
+    assert stems(pairs.depth) == [depth[k] for k in kept]
+    assert f"rgb/{colour[number]}.png" in pairs.note
+    assert "1 of 9" in pairs.note
+    assert pairs.time_s == pytest.approx([(k - kept[0]) / 10 for k in kept])
     near = [f"{10 + k / 10 + 0.05:.3f}" for k in range(9)]
     assert len(pair_up(paths("rgb", *colour), paths("depth", *near)).depth) == 9
 
 
-def test_how_many_pictures_have_no_depth_is_told() -> None:
+def test_pairs_of_the_tum_benchmark_are_up_to_20_ms_apart() -> None:
+    colour = [f"{10 + k / 30:.6f}" for k in range(9)]
+    depth = [f"{10 + k / 30 + 0.019:.6f}" for k in range(9)]
+    pairs = pair_up(paths("rgb", *colour), paths("depth", *depth))
+    assert len(pairs.colour) == 9
+    assert pairs.note == ""
+
+
+def test_pictures_that_are_missing_in_one_folder_are_left_out_by_their_numbers() -> None:
+    colour, depth = [f"a{k:03}" for k in (1, 2, 4, 5, 6)], [f"d{k}" for k in (1, 2, 3, 5, 6)]
+    pairs = pair_up(paths("rgb", *colour), paths("depth", *depth))
+    assert stems(pairs.colour) == ["a001", "a002", "a005", "a006"]
+    assert stems(pairs.depth) == ["d1", "d2", "d5", "d6"]
+    assert "a004.png" in pairs.note
+
+
+def test_rows_that_begin_with_other_numbers_go_together_by_their_order() -> None:
+    colour, depth = [f"a{k}" for k in range(5)], [f"d{k}" for k in range(1, 6)]
+    assert stems(pair_up(paths("rgb", *colour), paths("depth", *depth)).depth) == depth
+
+
+def test_if_most_pictures_have_no_depth_they_are_refused() -> None:
     colour = [f"{10 + k / 10:.3f}" for k in range(9)]
-    with refused("10.300", "6 of 9"):
+    with refused("10.300", "0.050 s", "6 of 9"):
         pair_up(paths("rgb", *colour), paths("depth", *colour[:3]))
 
 

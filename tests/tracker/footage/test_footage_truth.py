@@ -86,7 +86,7 @@ def test_what_may_be_either_is_refused_with_what_would_be_right(tmp_path):
     [
         ("1,1,2,3,4\n", ("6 to 10 numbers",)),
         ("1,1,2,3,4,5\n2,1,2,3,4,5,1\n", (":2: ", "6 numbers")),
-        ("1 1 2 3 4 5\n", ("comma",)),
+        ("1 1 2 3 4 x\n", ("must be numbers",)),
         ("1,1,2,3,4,5\n1,1,2,3,4,5\n", (":2: ", "once")),
         ("1,1,2,3,4,5,0.5\n", ("counted must be 0 or 1",)),
     ],
@@ -214,3 +214,11 @@ def test_doubts_are_told_with_the_scores(tmp_path):
     truth.write_text("".join(f"{f},4,{400 + f},90,40,200\n" for f in range(1, 7)))
     result = call(clip, "--out", tmp_path / "out", "--truth", truth)
     assert "note: truth: 100% of the boxes are outside" in result.stderr
+
+
+def test_rows_that_benchmarks_score_in_another_way_are_noted(tmp_path):
+    path = tmp_path / "gt.txt"
+    path.write_text("1,1,2,3,4,5,1,1,0\n2,1,2,3,4,5,1,1,1\n2,2,9,3,4,5,1,6,1\n")
+    hidden, vehicle = load_truth(path, None).notes
+    assert_names(hidden, "1 box of visible fraction 0")
+    assert_names(vehicle, "class 6", "MOT20")

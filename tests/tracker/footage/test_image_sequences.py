@@ -7,8 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+from peopleboy.tracker.footage.grey import are_bytes_swapped
 from peopleboy.tracker.footage.image_sequences import open_footage
 from peopleboy.tracker.footage.picture_names import jumps, pictures_in
+from peopleboy.tracker.footage.read_picture import read_picture
 from tests.helpers.calls.footage_calls import call, refusal
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.images.footage_files import walker, write_folder
@@ -48,6 +50,7 @@ def test_many_jumps_are_counted(tmp_path):
         ("17001203", "17001270", "17001335", "17001403"),  # times
         ("seq1_f1", "seq1_f2", "seq2_f7", "seq2_f8"),  # two numbers
         ("anna", "ben", "cleo"),
+        ("10.10", "10.14", "10.18", "10.30"),  # times
         ("frame1",),
         (),
     ],
@@ -105,6 +108,54 @@ def test_grey_with_opacity_is_said_to_have_opacity(tmp_path):
     result = call(clip, "--out", tmp_path / "out")
     assert_names(result.stderr, "note: ", "opacity")
     assert "fourth" not in result.stderr
+
+
+def test_equal_channels_of_16_bits_are_read_as_counts_and_others_as_8_bits(tmp_path):
+    counts = np.where(walker(0) > 100, 30415, 29315).astype(np.uint16)
+    equal, colours = (tmp_path / f"{name}.png" for name in ("equal", "colours"))
+    cv2.imwrite(str(equal), np.dstack([counts] * 3))
+    cv2.imwrite(str(colours), np.dstack([counts, counts, counts // 2]))
+    notes = []
+    np.testing.assert_array_equal(read_picture(equal, notes), counts)
+    assert notes == []
+    assert read_picture(colours, notes).dtype == np.uint8
+    assert "of which 8 are read" in notes[0]
+
+
+def test_counts_with_exchanged_bytes_are_noticed():
+    noise = np.random.default_rng(0).integers(0, 30, walker(0).shape)
+    counts = np.where(walker(0) > 100, 30415, 29315).astype(np.uint16) + noise.astype(np.uint16)
+    assert are_bytes_swapped(counts.byteswap())
+    for sound in (counts, counts >> 8, counts << 8, np.zeros_like(counts), walker(0)):
+        assert not are_bytes_swapped(sound)
+
+
+def test_a_tiff_of_64_bits_is_refused_with_advice(tmp_path):
+    cv2.imwrite(str(tmp_path / "a.tif"), np.full((60, 80), 20.5))
+    with refused("a.tif", "64-bit floats", "32-bit"):
+        read_picture(tmp_path / "a.tif", [])
+
+
+def test_a_folder_with_colour_and_infrared_pictures_is_refused_with_both(tmp_path):
+    write_folder(tmp_path / "clip" / "color", 3)
+    write_folder(tmp_path / "clip" / "ir", 3)
+    with refused("clip", "color/", "ir/"):
+        open_footage(tmp_path / "clip")
+
+
+def test_a_video_with_uneven_times_is_not_taken_for_a_damaged_one(tmp_path):
+    av = pytest.importorskip("av")
+    with av.open(str(tmp_path / "uneven.mkv"), "w") as film:
+        stream = film.add_stream("ffv1", rate=30)
+        stream.width, stream.height, stream.pix_fmt = 32, 24, "gray"
+        for time in (0, 2, 4, 5, 17, 19, 20):
+            frame = av.VideoFrame.from_ndarray(np.full((24, 32), 29, np.uint8), format="gray")
+            frame.pts = time
+            film.mux(stream.encode(frame))
+        film.mux(stream.encode())
+    footage = open_footage(tmp_path / "uneven.mkv")
+    assert len(list(footage)) == 7
+    assert_names(footage.notes[-1], "7 pictures at uneven times", "--rate-hz 9")
 
 
 def test_a_folder_that_vanishes_is_refused(tmp_path):
