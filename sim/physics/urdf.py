@@ -161,7 +161,7 @@ def parse_urdf(path: Path) -> ElementTree.Element:
 def _read_joints(root: ElementTree.Element, path: Path) -> Joints:
     """Read the joints by child link, which must form trees."""
     joints = {link_named(joint, "child"): joint for joint in root.iterfind("./joint")}
-    depths = {}
+    depths: dict[str, int] = {}
     for child in joints:
         chain = [child]
         while (parent := link_named(joints[chain[-1]], "parent")) in joints and parent not in depths:

@@ -155,7 +155,7 @@ def _as_array(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
 
 def _has_deep_colours(opened: Image.Image) -> bool:
     """Return whether a PNG has 16 bits a channel, of which Pillow reads 8."""
-    return opened.format == "PNG" and any("16" in str(tile[3]) for tile in opened.tile)
+    return opened.format == "PNG" and any("16" in str(tile[3]) for tile in getattr(opened, "tile", ()))
 
 
 def _deep_grey(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
