@@ -65,6 +65,12 @@ def within_image(box: Floats, width_px: int, height_px: int) -> Floats:
     return np.concatenate([near, far - near], axis=-1)
 
 
+def centres_outside(box: Floats, width_px: int, height_px: int) -> NDArray[np.bool_]:
+    """Return which boxes (N, 4) have their centre outside an image."""
+    u, v = (box[:, :2] + box[:, 2:] / 2.0).T
+    return np.asarray(~((u >= 0.0) & (u <= width_px) & (v >= 0.0) & (v <= height_px)))
+
+
 def area(box: Floats) -> Floats:
     """Return the areas (...) [px^2] of boxes (..., 4)."""
     return np.asarray(box[..., 2] * box[..., 3])

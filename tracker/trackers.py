@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final, Protocol, runtime_checkable
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import guarded, load_own
 from peopleboy.registry import Registry
+from peopleboy.tracker.tracker_names import split_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -17,7 +18,10 @@ if TYPE_CHECKING:
     from peopleboy.tracker.frame import Frame
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
     from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+    from peopleboy.tracker.sensors.own_detector import ImageDetector
+    from peopleboy.tracker.sensors.thermal import ThermalSensor
     from peopleboy.tracker.track import Box, Track
+    from peopleboy.tracker.tracking.config import PeopleTrackerConfig
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
 
@@ -69,6 +73,8 @@ CONTOUR_TRACKER: Final = "contour"
 DEFAULT_TRACKER: Final = DETECTION_TRACKER
 BY_CONTRAST: Final = frozenset({DETECTION_TRACKER})
 """Trackers that use only the contrast of a thermal image, not its absolute temperatures."""
+WITH_DETECTOR: Final = (DETECTION_TRACKER, "handover", "fused", "attentive-fused")
+"""Trackers that can use a user's detector in place of the learned one; it is their second argument."""
 
 
 def explanation_of(tracker: Tracker) -> object:
@@ -101,14 +107,22 @@ def _rgbd_tracker(config: "RgbdConfig", rng: "np.random.Generator") -> "RgbdTrac
     return RgbdTracker(config, shipped_windows(sees_depth=config.sees_depth), rng)
 
 
-def _fused_tracker() -> "PeopleTracker":
+def _thermal_sensor(
+    detector: "ImageDetector | None", config: "PeopleTrackerConfig | None" = None
+) -> "ThermalSensor":
+    from peopleboy.tracker.sensors.own_detector import OwnDetector
+    from peopleboy.tracker.sensors.thermal import ThermalSensor
+
+    return ThermalSensor(config, None if detector is None else OwnDetector(detector, config))
+
+
+def _fused_tracker(detector: "ImageDetector | None") -> "PeopleTracker":
     from peopleboy.tracker.sensors.depth import DepthSensor
     from peopleboy.tracker.sensors.panorama import PanoramaSensor
-    from peopleboy.tracker.sensors.thermal import ThermalSensor
     from peopleboy.tracker.tracking.config import FUSED
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
-    ahead = (ThermalSensor(FUSED), DepthSensor(tracker=FUSED))
+    ahead = (_thermal_sensor(detector, FUSED), DepthSensor(tracker=FUSED))
     return PeopleTracker(ahead, FUSED, optional=(PanoramaSensor(tracker=FUSED),))
 
 
@@ -119,11 +133,10 @@ def _fused_tracker() -> "PeopleTracker":
     "each person with a Kalman filter in metres. Needs contrast, but not temperatures. "
     "Re-identifies people by the colours of their clothes.",
 )
-def _detection(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
-    from peopleboy.tracker.sensors.thermal import ThermalSensor
+def _detection(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
-    return PeopleTracker((ThermalSensor(),))
+    return PeopleTracker((_thermal_sensor(detector),))
 
 
 @TRACKERS.register(
@@ -220,13 +233,12 @@ def _panoramic(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     summary="Detects people in the thermal image and in the panorama, in one Kalman filter for each person. "
     "A person keeps the same id from the thermal image to the panorama and back.",
 )
-def _handover(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
+def _handover(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.sensors.panorama import PanoramaSensor
-    from peopleboy.tracker.sensors.thermal import ThermalSensor
     from peopleboy.tracker.tracking.config import FUSED
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
-    return PeopleTracker((ThermalSensor(FUSED), PanoramaSensor(tracker=FUSED)), FUSED)
+    return PeopleTracker((_thermal_sensor(detector, FUSED), PanoramaSensor(tracker=FUSED)), FUSED)
 
 
 @TRACKERS.register(
@@ -260,8 +272,8 @@ def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
     "has that camera, in one Kalman filter for each person. Uses depth to find occluders. Re-identifies "
     "people by colours, motion and stature.",
 )
-def _fused(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
-    return _fused_tracker()
+def _fused(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
+    return _fused_tracker(detector)
 
 
 @TRACKERS.register(
@@ -298,29 +310,35 @@ def _attentive_printed(rng: "np.random.Generator") -> Tracker:
     scope="as `fused` and `attentive`",
     summary="Adds the re-identification of `attentive` to `fused`, with all colour cameras.",
 )
-def _attentive_fused(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
+def _attentive_fused(
+    rng: "np.random.Generator",  # noqa: ARG001
+    detector: "ImageDetector | None" = None,
+) -> Tracker:
     from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
     from peopleboy.tracker.attention.people.recogniser import ByColour
 
-    return AttentiveTracker(_fused_tracker(), ByColour())
+    return AttentiveTracker(_fused_tracker(detector), ByColour())
 
 
 def is_own(name: str) -> bool:
-    """Return whether a name is that of an external tracker: "module:Class", or of another package."""
-    return ":" in name or TRACKERS.is_plugged_in(name)
+    """Return whether tracks depend on a user's tracker or detector, or on that of another package."""
+    return ":" in name or TRACKERS.is_plugged_in(name) or split_name(name)[1] is not None
 
 
 def make_tracker(name: str, seed: int = 0) -> Tracker:
     """Make a tracker by its name: one of `TRACKERS`, or "module:Class" for one of your own.
 
-    Modules are searched for on the Python path and in the working directory.
+    "detection+module:Class" is the tracker `detection` with a detector of your own, and "detection+FILE.txt"
+    with the detections of a MOTChallenge file; `WITH_DETECTOR` lists the trackers that can use them. Modules
+    are searched for on the Python path and in the working directory.
 
     Args:
         name: of the tracker.
         seed: of its random numbers. The tracker of `peopleboy run --seed 3` is the one with seed 3.
 
     Raises:
-        BadInput: the name is unknown, the object is not a tracker, or the seed is negative.
+        BadInput: the name is unknown, the object is not a tracker or detector, the tracker uses no detector,
+            or the seed is negative.
     """
     from peopleboy.random_streams import stream  # here, so that listing trackers does not load NumPy
 
@@ -331,6 +349,9 @@ def make_tracker(name: str, seed: int = 0) -> Tracker:
     if number < 0:
         raise BadInput(f"tracker {name!r}: seed must be a whole number of 0 or more, got {seed!r}")
     rng = stream(number, "tracker")
+    tracker, detector = split_name(name)
+    if detector is not None and name not in TRACKERS:
+        return _with_detector(tracker, detector, rng)
     if ":" in name:
         return _checked(name, load_own("tracker", name, _CALL)(rng))
     if name not in TRACKERS:
@@ -340,6 +361,18 @@ def make_tracker(name: str, seed: int = 0) -> Tracker:
         return _checked(name, guarded("tracker", name, _CALL, TRACKERS[name])(rng))
     shipped: Tracker = TRACKERS[name](rng)
     return shipped
+
+
+def _with_detector(tracker: str, detector: str, rng: "np.random.Generator") -> Tracker:
+    from peopleboy.tracker.sensors.own_detector import make_detector
+
+    if tracker not in WITH_DETECTOR:
+        known = ", ".join(WITH_DETECTOR)
+        raise BadInput(
+            f"tracker {tracker!r} uses no detector, got {detector!r}; choose a tracker from {known}"
+        )
+    made: Tracker = TRACKERS[tracker](rng, make_detector(detector))
+    return made
 
 
 _CALL: Final = "with a numpy.random.Generator"

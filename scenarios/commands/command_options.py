@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 SEED = "Random seed.  [default: 0, or the seed of the run if SCENARIO is a run's scenario.yaml]"
 TRACKERS = f"{', '.join(TRACKER_NAMES)}, truth (ground-truth boxes) or module:Class (your own)"
 TRACKER = f"Tracker to use: {TRACKERS}.  [default: the scenario's tracker, or detection]"
+DETECTOR = (
+    "Detector that replaces the tracker's own: module:Class (your own), or a MOTChallenge file of detections "
+    "that ends in .txt. For the trackers detection, handover, fused and attentive-fused."
+)
 BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)} or module:Class (your own)"
 BEHAVIOUR = f"Behaviour that drives the robot: {BEHAVIOURS}.  [default: the scenario's behaviour]"
 

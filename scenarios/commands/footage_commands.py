@@ -8,6 +8,7 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.command_options import (
+    DETECTOR,
     PATH,
     FieldsCommand,
     GivenOptions,
@@ -17,6 +18,7 @@ from peopleboy.scenarios.commands.command_options import (
     output_options,
     print_note,
 )
+from peopleboy.tracker.tracker_names import with_detector
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 if TYPE_CHECKING:
@@ -57,6 +59,7 @@ _TRACKERS = (
     *("rate_hz", "tracker", "truth", "boxes", "seed", "video", "overwrite"),
     tracker=f"Tracker to use: {_TRACKERS}.  [default: detection, or rgbd with --depth]",
 )
+@click.option("--detector", help=DETECTOR)
 @click.option(
     "--start",
     metavar="X,Y,W,H|truth",
@@ -72,6 +75,7 @@ def track(
     rgbd: "GivenOptions[RgbdOptions]",
     camera: "GivenOptions[RgbdCamera]",
     given: "GivenOptions[TrackOptions]",
+    detector: str | None,
     start: str | None,
     output: Output,
 ) -> None:
@@ -89,12 +93,13 @@ def track(
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.tracker.footage.grey import parse_scale
 
+    tracker = given.tracker or (DEFAULT_TRACKER if rgbd.depth is None else RGBD_TRACKER)
     options = given.make(
         footage=footage,
         **files.values,
         radiometry=thermal.make(scale=None if scale is None else parse_scale(scale)),
         rgbd=_rgbd(rgbd, camera),
-        tracker=given.tracker or (DEFAULT_TRACKER if rgbd.depth is None else RGBD_TRACKER),
+        tracker=with_detector(tracker, detector),
         start=None if start is None else parse_start(start),
     )
     with progress_bar(footage.name, unit="frames") as show:

@@ -11,6 +11,7 @@ import click
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.command_options import (
     BEHAVIOUR,
+    DETECTOR,
     SEED,
     TRACKER,
     FieldsCommand,
@@ -23,6 +24,7 @@ from peopleboy.scenarios.commands.command_options import (
     workers_options,
 )
 from peopleboy.scenarios.commands.completion import complete_scenario
+from peopleboy.tracker.tracker_names import shown_detector, shown_name
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.files.scenario import Scenario
@@ -36,12 +38,13 @@ if TYPE_CHECKING:
 @click.argument("scenario", shell_complete=complete_scenario)
 @options_of(
     "scenarios.running.run_options:RunOptions",
-    *("seed", "out", "frames", "tracker", "boxes", "behaviour", "physics"),
+    *("seed", "out", "frames", "tracker", "detector", "boxes", "behaviour", "physics"),
     *("renderer", "record", "lossless", "overwrite"),
     seed=SEED,
-    out="Output folder.  [default: runs/SCENARIO-SEED, followed by -TRACKER, -BEHAVIOUR or -PHYSICS "
-    "where they differ from the scenario's]",
+    out="Output folder.  [default: runs/SCENARIO-SEED, followed by -TRACKER, -DETECTOR, -BEHAVIOUR or "
+    "-PHYSICS where they differ from the scenario's]",
     tracker=TRACKER,
+    detector=DETECTOR,
     behaviour=BEHAVIOUR,
 )
 @click.option(
@@ -119,7 +122,9 @@ def _check_physics(given: "GivenOptions[RunOptions]") -> None:
 def _others(scenario: "Scenario | None", given: "GivenOptions[RunOptions]") -> str:
     """Return the suffix of the folder's name: the options that differ from the scenario."""
     usual = () if scenario is None else (scenario.tracker, scenario.robot.behaviour, scenario.spec.physics)
-    chosen = (given.tracker, given.behaviour, given.physics)
+    tracker = None if given.tracker is None else shown_name(given.tracker)
+    detector = None if given.detector is None else shown_detector(given.detector)
+    chosen = (tracker, detector, given.behaviour, given.physics)
     others = [each for each in chosen if each is not None and each not in usual]
     return "".join(f"-{each.replace(':', '.')}" for each in others)
 
@@ -129,7 +134,7 @@ def _run_one(scenario: "Scenario", options: "RunOptions", output: Output) -> Non
 
     scores = _run_shown(scenario, options)
     about = {"run": str(options.out), "scenario": scenario.name, "seed": options.seed}
-    about["tracker"] = tracker_name(scenario, options)
+    about["tracker"] = shown_name(tracker_name(scenario, options))
     output.results(
         lambda: about | {"notes": list(scores.notes), "metrics": scores.to_json()},
         lambda: _show(scores, options),
@@ -195,9 +200,10 @@ _SEEN: Final = 0.3
 )
 @options_of(
     "scenarios.running.run_options:RunOptions",
-    *("out", "tracker", "boxes", "behaviour", "physics", "overwrite"),
+    *("out", "tracker", "detector", "boxes", "behaviour", "physics", "overwrite"),
     out="Folder for the run folders.  [default: runs]",
     tracker=TRACKER,
+    detector=DETECTOR,
     behaviour=BEHAVIOUR,
     overwrite="Replace earlier runs.",
 )

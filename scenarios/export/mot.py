@@ -4,6 +4,7 @@ gt/mot_challenge/seqmaps/peopleboy-all.txt               names of the sequences
 gt/mot_challenge/peopleboy-all/SEQUENCE/seqinfo.ini      length, frame rate, size
 /gt/gt.txt        truth
 /img1/000001.png  images of the camera
+/det/det.txt      detections of PeopleBoy's detector in each image, for thermal cameras
 trackers/mot_challenge/peopleboy-all/TRACKER/data/SEQUENCE.txt
 
 The boxes of gt.txt enclose torsos, as in the run itself, or whole people, including hidden parts.
@@ -14,18 +15,20 @@ tracker has boxes in its images.
 Runs of a rendered set are written by split: instead of peopleboy-all there are peopleboy-train, peopleboy-val
 and peopleboy-test.
 
-There is no det/det.txt: a run has no detections of single images, and ground truth is no detection.
+The detections are those of single images, whatever the tracker of the run. Their boxes enclose torsos.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.export.detections import detections_text
 from peopleboy.scenarios.export.replay import OneCamera, Play, with_people, write_camera_images
 from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.run_folder.run_files import true_boxes, truth_files
+from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.tracker.evaluation.mot_files import truth_line
 from peopleboy.tracker.footage.box_kinds import BoxKind
 
@@ -151,7 +154,15 @@ def _write_sequence(name: str, shots: OneCamera, folder: Path, play: Play, boxes
     lines = "".join(f"{key}={value}\n" for key, value in settings.items())
     (folder / "seqinfo.ini").write_text(f"[Sequence]\n{lines}", encoding="utf-8")
     (folder / "gt" / "gt.txt").write_text(gt_text(shots, boxes), encoding="utf-8")
-    write_camera_images(shots, play, lambda number: folder / "img1" / image_file(number))
+
+    def image_path(number: int) -> Path:
+        return folder / "img1" / image_file(number)
+
+    write_camera_images(shots, play, image_path)
+    if isinstance(shots.run.robot.cameras[shots.name], ThermalConfig):
+        (folder / "det").mkdir()
+        text = detections_text(shots, image_path)
+        (folder / "det" / "det.txt").write_text(text, encoding="utf-8")
 
 
 def _judged(cells: list[str]) -> list[str]:

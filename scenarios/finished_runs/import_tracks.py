@@ -25,6 +25,7 @@ from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.settings import meaning_of
 from peopleboy.sim.cameras.kinds import with_boxes
+from peopleboy.tracker.boxes import centres_outside
 from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
@@ -98,8 +99,7 @@ def _check_end(boxes: TrackBoxes, path: Path, shots: OneCamera) -> None:
 def _check_view(boxes: TrackBoxes, path: Path, shots: OneCamera) -> None:
     """Refuse boxes that are mostly outside the camera's image."""
     width, height = shots.size
-    u, v = (boxes.box[:, :2] + boxes.box[:, 2:] / 2.0).T
-    outside = ~((u >= 0.0) & (u <= width) & (v >= 0.0) & (v <= height))
+    outside = centres_outside(boxes.box, width, height)
     if len(boxes) and outside.mean() > _MOST_OUTSIDE:
         raise BadInput(
             f"{path}: boxes must be in pixels of the {width} x {height} images of camera {shots.name!r}; "

@@ -14,6 +14,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
+from peopleboy.scenarios.run_folder.run_tables import odometry_pose
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.cameras.kinds import image_folders
 from peopleboy.tracker.frame import DEPTH, DEPTH_AMPLITUDE, DEPTH_COLOUR, THERMAL, Frame, Odometry
@@ -52,7 +53,7 @@ def run_frames(run: FinishedRun) -> Iterator[Frame]:
         images = _read(run.folder, folders, row["frame"])
         if DEPTH not in images:
             continue
-        now = Pose2(*(row[f"odometry_{name}"] for name in ("x_m", "y_m", "heading_rad")))
+        now = odometry_pose(row)
         odometry = None if before is None else Odometry.between(before, now)
         yield Frame(images=images, calibrations=calibrations, time_s=row["time_s"], odometry=odometry)
         before = now

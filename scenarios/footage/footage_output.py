@@ -127,7 +127,7 @@ class FootageLog:
     def __init__(self, folder: Path, options: TrackOptions, views: Views, truth: GivenTruth | None) -> None:
         self._folder, self._views, self._truth = folder, views, truth
         self._sheet = Sheet(options.footage.resolve().name, has_truth=truth is not None)
-        self._means = f"at {views.rate_hz:g} Hz, tracker {options.tracker}"
+        self._means = f"at {views.rate_hz:g} Hz, tracker {options.shown_tracker}"
         self._stack = ExitStack()
         self._film: FilmWriter | None = None
         if options.video:

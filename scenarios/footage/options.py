@@ -15,6 +15,7 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import LEAST_SIDE_PX, Radiometry
+from peopleboy.tracker.tracker_names import is_detection_file, shown_name, split_name
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 VERTICAL_FOV_DEG: Final = 43.0
@@ -164,10 +165,18 @@ class TrackOptions:
     overwrite: Annotated[bool, Field(description="Replace an earlier run in the output folder.")] = False
 
     @property
+    def shown_tracker(self) -> str:
+        """Name of the tracker as reports show it."""
+        return shown_name(self.tracker)
+
+    @property
     def read(self) -> tuple[Path, ...]:
         """All input paths, which must not be overwritten."""
         depth = () if self.rgbd is None else (self.rgbd.depth, self.rgbd.odometry)
-        return tuple(path for path in (self.footage, self.colour, self.truth, *depth) if path is not None)
+        detector = split_name(self.tracker)[1]
+        detections = Path(detector) if detector is not None and is_detection_file(detector) else None
+        paths = (self.footage, self.colour, self.truth, *depth, detections)
+        return tuple(path for path in paths if path is not None)
 
 
 def parse_start(text: str) -> Box | str:

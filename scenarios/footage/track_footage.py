@@ -32,7 +32,7 @@ class Tracked:
         tracks: number of track ids.
         scores: scores against the ground truth; None without ground truth.
         notes: notes on the interpretation of the inputs.
-        boxes: what the boxes enclose; None for your own tracker, if unknown.
+        boxes: what the boxes enclose; None for your own tracker or detector, if unknown.
     """
 
     frames: int
@@ -60,7 +60,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
     truth = _truth_of(options, views)
     kind = _kind_of(options, truth)
     tracker = CheckedTracker(
-        _tracker_of(options, views, truth, kind), f"tracker {options.tracker!r}", views.cameras
+        _tracker_of(options, views, truth, kind), f"tracker {options.shown_tracker!r}", views.cameras
     )
     about = _about(options, views) | {"boxes": kind}
     times = [time.perf_counter()]
@@ -118,7 +118,7 @@ def _notes_on(truth: GivenTruth | None, size: tuple[int, int]) -> list[str]:
 def _kind_of(options: TrackOptions, truth: GivenTruth | None) -> BoxKind | None:
     if is_own(options.tracker):
         if options.boxes is not None:
-            raise BadInput(f"--boxes {options.boxes}: not with your own tracker; leave it out")
+            raise BadInput(f"--boxes {options.boxes}: not with your own tracker or detector; leave it out")
         return None
     if options.boxes is not None:
         return options.boxes
@@ -157,7 +157,7 @@ def _about(options: TrackOptions, views: Views) -> dict[str, Any]:
     return {
         "status": "complete",
         "footage": options.footage.name,
-        "tracker": options.tracker,
+        "tracker": options.shown_tracker,
         "seed": options.seed,
         "rate_hz": views.rate_hz,
         **views.about(),

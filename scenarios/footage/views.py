@@ -25,6 +25,7 @@ from peopleboy.tracker.footage.picture_names import pictures_in
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
 from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, rate_in
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
+from peopleboy.tracker.tracker_names import split_name
 from peopleboy.tracker.trackers import BY_CONTRAST
 
 _COLOUR_FOLDERS: Final = ("rgb", "color")
@@ -192,7 +193,7 @@ class ThermalViews:
                 to_grey = grey_maker(
                     radiometry,
                     is_grey=thermal.dtype == np.uint8,
-                    by_contrast=options.tracker in BY_CONTRAST,
+                    by_contrast=split_name(options.tracker)[0] in BY_CONTRAST,
                 )
             images: dict[str, NDArray[np.uint8]] = {THERMAL: to_grey(values)}
             if picture is not None:

@@ -96,7 +96,7 @@ def tracker_cameras(name: str) -> tuple[str, ...]:
 
 
 def _make(name: str, seed: int) -> Tracker:
-    if ":" not in name and name not in TRACKERS:
+    if not is_own(name) and name not in TRACKERS:
         known = ", ".join((*TRACKERS, ORACLE))
         raise BadInput(f"unknown tracker {name!r}; choose from {known}, or your own as module:Class")
     return make_tracker(name, seed)

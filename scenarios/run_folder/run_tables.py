@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 from pyarrow.fs import LocalFileSystem
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.atomic_output import PART
 from peopleboy.tracker.contour.explanation import ContourExplanation, Ellipse
@@ -270,6 +271,11 @@ def track_row(frame: int, time_s: float, track: Track, explanation: object, came
 def robot_row(tick: Tick) -> Row:
     """Return the row of the robot table for one tick."""
     return row_of(_ROBOT, tick.frame, tick.truth.time_s, tick)
+
+
+def odometry_pose(row: Mapping[str, Any]) -> Pose2:
+    """Return the pose by odometry from a row of the robot table."""
+    return Pose2(row["odometry_x_m"], row["odometry_y_m"], row["odometry_heading_rad"])
 
 
 LOCAL: Final = LocalFileSystem()

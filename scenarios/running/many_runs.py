@@ -19,6 +19,7 @@ from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.frame_cache import Film, film
 from peopleboy.scenarios.running.run import is_finished, run, tracker_name
 from peopleboy.scenarios.running.run_options import RunOptions
+from peopleboy.tracker.tracker_names import is_detection_file, split_name
 
 _RATE_HZ = 15
 _ARRIVAL_S = 30.0  # [s] timeout for a run of another machine to appear in a shared folder
@@ -76,12 +77,19 @@ def unfinished(tasks: Sequence[RunTask]) -> list[RunTask]:
     """Return the runs that are not complete, so that a killed command resumes.
 
     Raises:
-        BadInput: a run is invalid, or its folder contains something else.
+        BadInput: a run is invalid, its folder contains something else, or several runs would use one file of
+            detections.
     """
     for task in tasks:
         if task.scenario is not None or task is tasks[0]:  # random worlds are refused alike
             scenario = task.options.applied_to(task.played)
-            tracker_cameras(tracker_name(scenario, task.options))
+            name = tracker_name(scenario, task.options)
+            detector = split_name(name)[1]
+            if len(tasks) > 1 and is_detection_file(detector):
+                raise BadInput(
+                    f"{detector}: holds the detections of one run; give --detector to a single run"
+                )
+            tracker_cameras(name)
     waiting = [task for task in tasks if not task.is_finished]
     _LOG.info("%d of %d runs are complete already", len(tasks) - len(waiting), len(tasks))
     for task in waiting:

@@ -38,6 +38,7 @@ from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.footage.box_kinds import BoxKind
+from peopleboy.tracker.tracker_names import shown_name, with_detector
 from peopleboy.tracker.trackers import knows_again
 
 if TYPE_CHECKING:
@@ -97,8 +98,9 @@ FOLLOWERS = ("follow_person", "patrol")
 
 
 def tracker_name(scenario: Scenario, options: RunOptions) -> str:
-    """Return the name of a run's tracker: the requested one, or the scenario's."""
-    return scenario.tracker if options.tracker is None else options.tracker
+    """Return the name of a run's tracker, with its detector: the requested one, or the scenario's."""
+    tracker = scenario.tracker if options.tracker is None else options.tracker
+    return with_detector(tracker, options.detector)
 
 
 def run(
@@ -129,6 +131,7 @@ def run(
     scenario = options.applied_to(scenario)
     world: SimulatedWorld  # the oracle accesses it only after it is built
     name, given = tracker_name(scenario, options), scenario.robot.cameras
+    shown = shown_name(name)
     tracker = make_named_tracker(name, options.seed, lambda: world.truth())
     scenario = scenario.mounting(tracker.cameras)
     mounted = [camera for camera in scenario.robot.cameras if camera not in given]
@@ -138,7 +141,7 @@ def run(
     about = {
         "scenario": scenario.name,
         "seed": options.seed,
-        "tracker": name,
+        "tracker": shown,
         "boxes": options.boxes,
         "renderer": options.renderer,
         "rate_hz": config.control_hz,
@@ -150,7 +153,7 @@ def run(
         about["behaviour"] = scenario.own_behaviour
     _LOG.info(
         "%s: seed %d, tracker %s, cameras %s, physics %s",
-        *(scenario.name, options.seed, name, ", ".join(config.robot.cameras), config.physics),
+        *(scenario.name, options.seed, shown, ", ".join(config.robot.cameras), config.physics),
     )
     with ExitStack() as stack:
         stack.enter_context(left_by_signals())
@@ -167,7 +170,7 @@ def run(
             )
         )
         keep_own_files(scenario.kept_files(), options.out)
-        title = f"{scenario.name}, seed {options.seed}, tracker {name}"
+        title = f"{scenario.name}, seed {options.seed}, tracker {shown}"
         recorder = None
         if is_recorded(options.record):
             from peopleboy.scenarios.recording.recorder import Recorder  # here, as it loads rerun
@@ -188,7 +191,7 @@ def run(
         _LOG.info("%s: the world is built; running %d frames", scenario.name, frames)
         began_s = time.monotonic()
         stage = FaultySensors(world, faults)
-        checked = CheckedTracker(tracker, f"tracker {name!r}", config.robot.cameras)
+        checked = CheckedTracker(tracker, f"tracker {shown!r}", config.robot.cameras)
         eyes = FaultyTracker(checked, faults)
         for tick in closed_loop(stage, eyes, scenario.make_behaviour(), frames):
             events = observers.update(tick)
@@ -205,7 +208,7 @@ def run(
             corridor = score_corridor(drive, legs_of(scenario.plan))
         if scenario.robot.behaviour != "stand" and config.people:
             comfort = score_comfort(drive)
-        scores = score_run(options.out, frames, following, corridor, comfort, options.boxes, name)
+        scores = score_run(options.out, frames, following, corridor, comfort, options.boxes, shown)
         scores = replace(scores, contacts=tuple(observers.contacts.contacts))
         observers.save(options.out)
         folder.complete(scores.to_json())
@@ -250,7 +253,7 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
     scenario = options.applied_to(scenario)
     run = open_run(options.out)
     tracker = tracker_name(scenario, options)
-    if run.about.tracker != tracker:
+    if run.about.tracker != shown_name(tracker):
         raise BadInput(
             f"{options.out}: was run with tracker {run.about.tracker!r}; give --overwrite, or another --out"
         )

@@ -26,6 +26,7 @@ class RunOptions:
     out: Annotated[Path, Field(description="Output folder.")]
     frames: Annotated[bool, Field(description="Write the images of all cameras as PNG files.")] = False
     tracker: Annotated[str | None, Field(description="Tracker.")] = None
+    detector: Annotated[str | None, Field(description="Detector of the tracker.")] = None
     boxes: Annotated[
         BoxKind,
         Field(

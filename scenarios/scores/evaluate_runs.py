@@ -38,6 +38,7 @@ from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind, width_per_height
 from peopleboy.tracker.footage.footage_truth import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.tracker_names import split_name
 from peopleboy.tracker.trackers import TRACKERS
 
 # Position between the widths of both kinds of ground truth boxes from which boxes count as the other kind.
@@ -100,7 +101,7 @@ def kind_of_boxes(folder: Path, camera: str, tracker: str | None, said: BoxKind)
         tracker: name of the tracker; None for a tracker without a name.
         said: kind of boxes stated for the run.
     """
-    if tracker not in TRACKERS.shipped or camera == THERMAL:
+    if tracker is None or split_name(tracker)[0] not in TRACKERS.shipped or camera == THERMAL:
         return said
     config = cameras_of(folder).get(camera)
     is_round = config is not None and math.isfinite(around_px(config.camera))

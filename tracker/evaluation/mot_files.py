@@ -8,28 +8,32 @@ with a world position instead of class and visible fraction, as in MOT15.
 Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position). The last three may
 be missing.
 
+Detections: frame, -1, left, top, width, height, score, -1, -1, -1. What follows the height may be missing;
+score -1 means that there is none, unless other scores are negative, too.
+
 Values may be separated by white space instead, as in some trackers' results.
 
-An empty file is a sequence without people, or a tracker without tracks.
+An empty file is a sequence without people, a tracker without tracks, or a detector without detections.
 """
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import Floats
-from peopleboy.tracker.evaluation.sequence import Rows, TrackBoxes, TrueBoxes, find_fault
+from peopleboy.tracker.evaluation.sequence import Ints, Rows, TrackBoxes, TrueBoxes, find_fault
 
 TRUTH_COLUMNS = "frame, id, left, top, width, height, counted, class, visible fraction"
 TRACKS_COLUMNS = "frame, id, left, top, width, height, confidence, x, y, z"
+DETECTION_COLUMNS = "frame, -1, left, top, width, height, score"
 PERSON = 1
 DISTRACTORS = (2, 7, 8, 12)  # person on vehicle, static person, distractor, reflection
 CLASSES = range(1, 14)
 WIDTHS = range(6, 11)
-"""Allowed numbers of values per line of truth."""
+"""Allowed numbers of values per line of truth, and of detections."""
 TRACK_WIDTHS = range(7, 11)
 """Allowed numbers of values per line of results."""
 
@@ -100,6 +104,38 @@ def read_tracks(path: Path) -> TrackBoxes:
     return _build(path, TrackBoxes, table, confidence=table[:, 6])
 
 
+class DetectionRows(NamedTuple):
+    """The detections of a sequence.
+
+    Attributes:
+        frame: (N,) from 1.
+        box: (N, 4) [px] left, top, width, height; sizes above 0.
+        score: (N,) in any scale; NaN for a detection without a score.
+    """
+
+    frame: Ints
+    box: Floats
+    score: Floats
+
+
+def read_detections(path: Path) -> DetectionRows:
+    """Read a file of detections (`det.txt`).
+
+    Raises:
+        BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
+    """
+    table = _read_table(path, DETECTION_COLUMNS, WIDTHS)
+    frame, box = table[:, 0], table[:, 2:6]
+    score = table[:, 6] if table.shape[1] > DETECTION_COLUMNS.count(",") else np.full(len(table), _UNKNOWN)
+    fault = find_fault({"frame": frame, "box": box, "confidence": score})
+    if fault is not None:
+        raise BadInput(f"{path}:{fault[0] + 1}: {fault[1]}")
+    for row in np.flatnonzero((box[:, 2:] == 0.0).any(axis=1))[:1]:
+        raise BadInput(f"{path}:{row + 1}: width and height must be above 0, got {box[row, 2:].tolist()}")
+    is_unknown = (score == _UNKNOWN) & ((score >= 0.0) | (score == _UNKNOWN)).all()
+    return DetectionRows(frame.astype(np.int64), box, np.where(is_unknown, np.nan, score))
+
+
 def write_truth(path: Path, truth: TrueBoxes) -> None:
     """Write a truth file: boxes with 2 decimals, the visible fraction with 4; equal truth gives equal bytes.
 
@@ -128,6 +164,11 @@ def truth_line(frame: int, identity: int, box: Sequence[float], counted: bool, v
 def track_line(frame: int, identity: int, box: Sequence[float], confidence: float) -> str:
     """Return the line of one track in one frame, newline included."""
     return f"{_start(frame, identity, box)},{confidence:.4f},-1,-1,-1\n"
+
+
+def detection_line(frame: int, box: Sequence[float], score: float) -> str:
+    """Return the line of one detection in one frame, newline included."""
+    return track_line(frame, -1, box, score)
 
 
 def _read_table(path: Path, names: str, widths: range) -> Floats:

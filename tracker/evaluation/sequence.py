@@ -168,11 +168,13 @@ def _rules(columns: Mapping[str, Floats]) -> list[tuple[str, Bools, str]]:
     is_size = np.asarray((columns["box"][:, 2:] >= 0.0).all(axis=1))
     rules: list[tuple[str, Bools, str]] = [
         ("frame", _is_whole(columns["frame"], least=1), "frame must be a whole number from 1"),
-        ("id", _is_whole(columns["id"], least=0), "id must be a whole number from 0"),
         ("box", is_near, f"left, top, width, height must be within +-{FARTHEST:.0e} pixels"),
         ("box", is_size, "width and height must be 0 or more"),
-        ("id", _is_first(columns["frame"], columns["id"]), "an id must occur once in a frame"),
     ]
+    if "id" in columns:
+        rules.insert(1, ("id", _is_whole(columns["id"], least=0), "id must be a whole number from 0"))
+        once = _is_first(columns["frame"], columns["id"])
+        rules.append(("id", once, "an id must occur once in a frame"))
     if "visible" in columns:
         visible, counted = columns["visible"], columns["counted"]
         rules.append(("visible", (visible >= 0.0) & (visible <= 1.0), "the visible fraction must be 0 to 1"))

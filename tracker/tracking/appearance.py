@@ -42,6 +42,25 @@ def transfer_boxes(
     return np.asarray(np.nan_to_num(boxed))
 
 
+def boxes_in_other_image(
+    frame: Frame, boxes: Floats, here: str, there: str, view: Viewpoint | None = None
+) -> Floats:
+    """Transfer boxes (M, 4) [px] between the images of two cameras; uncalibrated ones are assumed aligned.
+
+    Args:
+        frame: with an image of both cameras.
+        boxes: in the image of the first camera.
+        here: name of the first camera.
+        there: name of the other camera.
+        view: viewpoint of the first camera; None for that of its calibration.
+    """
+    first, other = frame.calibrations.get(here), frame.calibrations.get(there)
+    (rows, columns), (other_rows, other_columns) = (frame.images[name].shape[:2] for name in (here, there))
+    if not (isinstance(first, PinholeCalibration) and isinstance(other, PinholeCalibration)):
+        return np.asarray(boxes * np.tile([other_columns / columns, other_rows / rows], 2))
+    return transfer_boxes(boxes, view or Viewpoint.of(first, (rows, columns)), first, other)
+
+
 Colours = NDArray[np.float32]
 
 _PARTS: Final = ((0.18, 0.5), (0.55, 0.9))  # top and bottom of torso and legs, in heights from the top
@@ -71,7 +90,7 @@ def describe_colours(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     if COLOUR not in frame.images or len(boxes) == 0:
         return result
     image = frame.rgb(COLOUR)
-    there = _seen_there(frame, boxes, view, (image.shape[0], image.shape[1]))
+    there = boxes_in_other_image(frame, boxes, THERMAL, COLOUR, view)
     least = -np.inf if view.floor_m is None else _LEAST_INSIDE
     _describe(image, there, np.array(_PARTS), least, *_BIN_OF, result)
     return result
@@ -120,15 +139,6 @@ def blend_colours(before: Colours, now: Colours, share: float) -> Colours:
 def _are_seen(colours: Colours) -> NDArray[np.bool_]:
     """Return for colours (K, FEATURES) which parts are visible, (K, PARTS)."""
     return np.asarray(colours.reshape(len(colours), PARTS, -1).max(axis=2) > 0.0)
-
-
-def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, int]) -> Floats:
-    """Transfer boxes (M, 4) to the colour image; uncalibrated images are assumed to be aligned."""
-    thermal, colour = frame.calibrations.get(THERMAL), frame.calibrations.get(COLOUR)
-    if not (isinstance(thermal, PinholeCalibration) and isinstance(colour, PinholeCalibration)):
-        rows, columns = frame.grey(THERMAL).shape
-        return np.asarray(boxes * np.tile([shape[1] / columns, shape[0] / rows], 2))
-    return transfer_boxes(boxes, view, thermal, colour)
 
 
 def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:

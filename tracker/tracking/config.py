@@ -229,6 +229,19 @@ class ColourDetectionConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DetectorScoreConfig:
+    """How the scores of a user's detector become log-odds.
+
+    Attributes:
+        most: greatest log-odds, positive or negative: a single detection confirms no track.
+        unscored: log-odds of a detection without a score.
+    """
+
+    most: float = 3.9
+    unscored: float = 2.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PeopleTrackerConfig:
     """All settings of the people tracker.
 
@@ -249,6 +262,7 @@ class PeopleTrackerConfig:
         existence_panorama: evidence of the panorama.
         association_panorama: association in the panorama.
         colour: use of the colour image.
+        detector_scores: use of the scores of a user's detector.
         stops_hidden: whether a hidden person who would be visible where the track is predicted stopped.
         hidden_share: share of a track that something nearer covers, from which it is hidden.
     """
@@ -287,6 +301,7 @@ class PeopleTrackerConfig:
         default_factory=lambda: AssociationConfig(overlap=0.0, highest=2.4)
     )
     colour: ColourDetectionConfig = field(default_factory=ColourDetectionConfig)
+    detector_scores: DetectorScoreConfig = field(default_factory=DetectorScoreConfig)
     stops_hidden: bool = False
     hidden_share: float = 0.4
 
