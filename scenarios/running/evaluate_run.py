@@ -18,6 +18,7 @@ def evaluate_run(
     tracker: str | type | None = None,
     seeds: Iterable[int] = (0,),
     *,
+    detector: str | type | None = None,
     boxes: BoxKind | str = BoxKind.TORSO,
 ) -> Scores:
     """Run a scenario with each seed and score the tracker against the ground truth.
@@ -26,7 +27,8 @@ def evaluate_run(
         scenario: a library name, the path of a YAML file, or a loaded scenario.
         tracker: a name, "module:Class", or your own class; None for the scenario's, or the default.
         seeds: seeds of the runs, such as range(10).
-        boxes: what the boxes of your own tracker enclose: "torso" or "whole".
+        detector: "module:Class", or your own class, that replaces the tracker's detector; None for its own.
+        boxes: what the boxes of your own tracker or detector enclose: "torso" or "whole".
 
     Returns:
         The scores over the frames of all runs.
@@ -35,14 +37,23 @@ def evaluate_run(
         BadInput: the scenario or the tracker is unknown, or there are no seeds.
     """
     loaded = load_scenario(scenario)
-    name = f"{tracker.__module__}:{tracker.__qualname__}" if isinstance(tracker, type) else tracker
     scores = []
     for seed in seeds:
         with TemporaryDirectory() as folder:
             options = RunOptions(
-                seed=seed, out=Path(folder) / "run", tracker=name, boxes=BoxKind(boxes), record=False
+                seed=seed,
+                out=Path(folder) / "run",
+                tracker=_name_of(tracker),
+                detector=_name_of(detector),
+                boxes=BoxKind(boxes),
+                record=False,
             )
             scores.append(run(loaded, options).people)
     if not scores:
         raise BadInput("seeds: must have at least one seed, such as range(10), got none")
     return combine(scores)
+
+
+def _name_of(own: str | type | None) -> str | None:
+    """Return the name by which commands select a class."""
+    return f"{own.__module__}:{own.__qualname__}" if isinstance(own, type) else own

@@ -184,24 +184,23 @@ class FileDetector:
     """Returns the detections of a MOTChallenge file: those of frame 1 for the first image, and so on.
 
     Scores from 0 to 1 are probabilities. If a score is outside this range, the scale is unknown, and the
-    log-odds of a detection follow from the share of the file's detections with lower scores. Detections
+    probability of a detection is the share of the file's detections with lower scores. Detections
     without a score are those of `read_detections`.
 
     Args:
         path: of the file.
-        config: log-odds of detections without a score.
+        config: probability of detections without a score.
 
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed.
     """
 
     camera = THERMAL
-    log_odds = True
 
     def __init__(self, path: Path, config: DetectorScoreConfig | None = None) -> None:
         self._path, self._images = path, count(1)
         frame, self._box, score = read_detections(path)
-        self._frame, self._score = frame, _file_log_odds(score, config or DetectorScoreConfig())
+        self._frame, self._score = frame, _probabilities(score, config or DetectorScoreConfig())
 
     def detect(self, image: NDArray[np.uint8]) -> tuple[Floats, Floats]:
         """Return the detections in the next image.
@@ -225,12 +224,12 @@ class FileDetector:
             )
 
 
-def _file_log_odds(score: Floats, config: DetectorScoreConfig) -> Floats:
-    """Return the log-odds (N,) of all scores of a file, NaN where none is given."""
+def _probabilities(score: Floats, config: DetectorScoreConfig) -> Floats:
+    """Return the probabilities (N,) of all detections of a file by their scores, NaN where none is given."""
     given, result = ~np.isnan(score), np.full(len(score), config.unscored)
     known = score[given]
     if ((known < 0.0) | (known > 1.0)).any():
         _, place, rows = np.unique(known, return_inverse=True, return_counts=True)
         known = ((np.cumsum(rows) - rows / 2.0) / len(known))[place]
-    result[given] = log_odds_of(known)
+    result[given] = known
     return result

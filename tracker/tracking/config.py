@@ -234,11 +234,11 @@ class DetectorScoreConfig:
 
     Attributes:
         most: greatest log-odds, positive or negative: a single detection confirms no track.
-        unscored: log-odds of a detection without a score.
+        unscored: probability of a detection without a score.
     """
 
     most: float = 3.9
-    unscored: float = 2.0
+    unscored: float = 0.88
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ import pytest
 
 from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
-from peopleboy.tracker.sensors.own_detector import FileDetector, OwnDetector, log_odds_of
+from peopleboy.tracker.sensors.own_detector import FileDetector, OwnDetector
 from peopleboy.tracker.sensors.thermal import ThermalSensor
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import WITH_DETECTOR, is_own, make_tracker
@@ -178,17 +178,16 @@ def of_file(path: Path, images: int) -> list[tuple[list[Any], list[Any]]]:
 
 def test_a_file_gives_each_image_its_detections_in_any_order(tmp_path: Path) -> None:
     path = written(tmp_path, "3,-1,5,6,7,8,0.5\n1,-1,10,20,30,80,0.75\n1,-1,50,20,30,80,0.25\n")
-    odds = float(np.log(3.0))
     assert of_file(path, 4) == [
-        ([[10, 20, 30, 80], [50, 20, 30, 80]], [pytest.approx(odds), pytest.approx(-odds)]),
+        ([[10, 20, 30, 80], [50, 20, 30, 80]], [0.75, 0.25]),
         ([], []),
-        ([[5, 6, 7, 8]], [0.0]),
+        ([[5, 6, 7, 8]], [0.5]),
         ([], []),
     ]
 
 
 @pytest.mark.parametrize("line", ["1,-1,10,20,30,80,-1,-1,-1,-1", "1,-1,10,20,30,80", "1,-1,10,20,30,80,-1"])
-def test_a_detection_without_a_score_gets_that_of_the_setting(line: str, tmp_path: Path) -> None:
+def test_a_detection_without_a_score_gets_the_probability_of_the_setting(line: str, tmp_path: Path) -> None:
     assert of_file(written(tmp_path, line), 1) == [([[10, 20, 30, 80]], [SCORES.unscored])]
 
 
@@ -197,8 +196,8 @@ def test_scores_in_an_unknown_scale_count_by_their_order(
     scale: Callable[[float], float], tmp_path: Path
 ) -> None:
     lines = [f"{k},-1,10,20,30,80,{scale(float(k))}\n" for k in range(1, 6)]
-    odds = [scores[0] for _, scores in of_file(written(tmp_path, "".join(lines)), 5)]
-    np.testing.assert_allclose(odds, log_odds_of(np.array([0.1, 0.3, 0.5, 0.7, 0.9])))
+    probabilities = [scores[0] for _, scores in of_file(written(tmp_path, "".join(lines)), 5)]
+    np.testing.assert_allclose(probabilities, [0.1, 0.3, 0.5, 0.7, 0.9])
 
 
 @pytest.mark.parametrize(
@@ -244,13 +243,15 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.usefixtures("home")
 @pytest.mark.parametrize("tracker", WITH_DETECTOR)
-def test_a_detector_is_found_by_name_in_the_working_directory(tracker: str, home: Path) -> None:  # noqa: ARG001
+def test_a_detector_is_found_by_name_in_the_working_directory(tracker: str) -> None:
     name = f"{tracker}+detector_for_test:Mine"
     assert make_tracker(name).cameras == make_tracker(tracker).cameras
     assert is_own(name)
 
 
+@pytest.mark.usefixtures("home")
 @pytest.mark.parametrize(
     ("name", "says"),
     [
@@ -266,6 +267,6 @@ def test_a_detector_is_found_by_name_in_the_working_directory(tracker: str, home
         ("detection+none.txt", ("none.txt", "No such file")),
     ],
 )
-def test_what_is_no_detector_is_refused(name: str, says: tuple[str, ...], home: Path) -> None:  # noqa: ARG001
+def test_what_is_no_detector_is_refused(name: str, says: tuple[str, ...]) -> None:
     with refused(*says):
         make_tracker(name)
