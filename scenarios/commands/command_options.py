@@ -25,6 +25,7 @@ from peopleboy.scenarios.commands.completion import (
     complete_names,
     complete_scenario,
 )
+from peopleboy.tracker.trackers import WITH_DETECTOR
 
 if TYPE_CHECKING:
     from peopleboy.settings import Setting
@@ -34,7 +35,7 @@ TRACKERS = f"{', '.join(TRACKER_NAMES)}, truth (ground-truth boxes) or module:Cl
 TRACKER = f"Tracker to use: {TRACKERS}.  [default: the scenario's tracker, or detection]"
 DETECTOR = (
     "Detector that replaces the tracker's own: module:Class (your own), or a MOTChallenge file of detections "
-    "that ends in .txt. For the trackers detection, handover, fused and attentive-fused."
+    f"(.txt). For the trackers {', '.join(WITH_DETECTOR)}.  [default: the tracker's own]"
 )
 BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)} or module:Class (your own)"
 BEHAVIOUR = f"Behaviour that drives the robot: {BEHAVIOURS}.  [default: the scenario's behaviour]"

@@ -87,13 +87,24 @@ def test_a_follower_is_trained_kept_without_pickles_and_compared(scene: Path, tm
         assert all(weights[name].dtype == np.float32 for name in weights)
 
 
+ACROSS: dict[str, Any] = WALKING | {
+    "people": [{"name": "anna", "path": [{"at_m": [4.5, -1.2]}, {"at_m": [4.5, 1.2], "speed_m_s": 1.0}]}]
+}
+
+
+@pytest.mark.slow
+def test_our_tracking_follows_the_detections_of_others_across(tmp_path: Path) -> None:
+    run = make_run(ACROSS, tmp_path / "run", "--detector", "examples.detectors:MovingBlobs")
+    metrics = json.loads((run / "metrics.json").read_text(encoding="utf-8"))
+    assert metrics["thesis"]["CR_percent"] > 30.0
+    assert metrics["counts"]["tracks"] == 1
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", some_of(["BackgroundSort", "HogByteTrack"], 2))
 def test_trackers_of_others_find_somebody_who_walks_across(name: str, tmp_path: Path) -> None:
     pytest.importorskip("trackers")
-    walk = [{"at_m": [4.5, -1.2]}, {"at_m": [4.5, 1.2], "speed_m_s": 1.0}]
-    scene = WALKING | {"people": [{"name": "anna", "path": walk}]}
-    run = make_run(scene, tmp_path / "run", "--tracker", f"examples.peers:{name}")
+    run = make_run(ACROSS, tmp_path / "run", "--tracker", f"examples.peers:{name}")
     metrics = json.loads((run / "metrics.json").read_text(encoding="utf-8"))
     assert metrics["thesis"]["CR_percent"] > 30.0
     assert metrics["thesis"]["CP_percent"] > 40.0
