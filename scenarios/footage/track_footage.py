@@ -12,6 +12,7 @@ from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
 from peopleboy.scenarios.footage.views import Views, open_views
 from peopleboy.scenarios.run_folder.atomic_output import atomic_folder, check_named
 from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.run_files import check_detections
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.evaluation.evaluate import Scores
@@ -62,6 +63,8 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
     tracker = CheckedTracker(
         _tracker_of(options, views, truth, kind), f"tracker {options.shown_tracker!r}", views.cameras
     )
+    if views.is_exact:
+        check_detections(options.tracker, views.expected)
     about = _about(options, views) | {"boxes": kind}
     times = [time.perf_counter()]
     trace = options.out.with_name(f"{options.out.name}-traceback.txt")

@@ -31,11 +31,12 @@ from peopleboy.scenarios.run_folder.run_tables import (
 )
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.floor import Places
-from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
+from peopleboy.tracker.evaluation.mot_files import DetectionRows, read_detections, read_tracks, read_truth
 from peopleboy.tracker.evaluation.sequence import Rows, TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Box, Status, Track
+from peopleboy.tracker.tracker_names import is_detection_file, split_name
 
 _AGAIN = "run the scenario again"
 _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
@@ -160,7 +161,7 @@ def check_whole(folder: Path, truth: TrueBoxes, tracks: TrackBoxes) -> None:
         _check_rows(tracks, folder / _TRACKS_TEXT, _written_tracks(beliefs))
 
 
-def check_end(rows: Rows, path: Path, frames: int) -> None:
+def check_end(rows: Rows | DetectionRows, path: Path, frames: int) -> None:
     """Refuse a file with frames beyond the end of the run.
 
     Raises:
@@ -168,6 +169,17 @@ def check_end(rows: Rows, path: Path, frames: int) -> None:
     """
     if rows.last_frame > frames:
         raise BadInput(f"{path}: must end with frame {frames}, the run's last, got {rows.last_frame}")
+
+
+def check_detections(tracker: str, frames: int) -> None:
+    """Refuse a tracker's file of detections, if it uses one, with frames beyond the end of the run.
+
+    Raises:
+        BadInput: the file has such frames, or is malformed.
+    """
+    detector = split_name(tracker)[1]
+    if detector is not None and is_detection_file(detector):
+        check_end(read_detections(Path(detector)), Path(detector), frames)
 
 
 def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Table:

@@ -27,6 +27,7 @@ from peopleboy.scenarios.run_folder.atomic_output import left_by_signals
 from peopleboy.scenarios.run_folder.finished_run import note_on, open_run
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.run_folder.image_files import about_gains
+from peopleboy.scenarios.run_folder.run_files import check_detections
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.comfort_metrics import score_comfort
 from peopleboy.scenarios.scores.contacts import ContactLog
@@ -138,6 +139,7 @@ def run(
     config = scenario.world(options.seed, options.renderer)
     check_cameras(tracker, config.robot.cameras)
     frames = round(scenario.duration_s * config.control_hz)
+    check_detections(name, frames)
     about = {
         "scenario": scenario.name,
         "seed": options.seed,

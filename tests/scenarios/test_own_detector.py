@@ -202,6 +202,17 @@ def test_a_file_is_refused_for_several_runs(home: Path, capsys: pytest.CaptureFi
     assert not Path("several").exists()
 
 
+def test_a_file_of_a_longer_run_is_refused(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    longer = home / "longer.txt"
+    longer.write_text(
+        f"{det_file(home).read_text(encoding='utf-8')}31,-1,9,9,20,60,0.9,-1,-1,-1\n", encoding="utf-8"
+    )
+    for command in (("run", "brief.yaml"), ("track", "plain/thermal")):
+        said = refusal(capsys, *command, "--detector", longer, "--out", "longer")
+        assert_names(said, "longer.txt", "must end with frame 30", "got 31")
+        assert not Path("longer").exists()
+
+
 def test_the_kind_of_boxes_in_footage_is_up_to_the_detector(capsys: pytest.CaptureFixture[str]) -> None:
     options = ("--detector", "warm_for_test:Warm", "--boxes", "whole", "--out", "kinds")
     assert_names(refusal(capsys, "track", "plain/thermal", *options), "--boxes whole", "your own")

@@ -117,6 +117,11 @@ class DetectionRows(NamedTuple):
     box: Floats
     score: Floats
 
+    @property
+    def last_frame(self) -> int:
+        """The last frame with a detection; 0 without detections."""
+        return int(self.frame.max(initial=0))
+
 
 def read_detections(path: Path) -> DetectionRows:
     """Read a file of detections (`det.txt`).
