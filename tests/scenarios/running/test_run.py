@@ -254,6 +254,7 @@ def test_a_run_ended_by_a_signal_says_so_and_is_no_failure_of_its_tracker(tmp_pa
     script = (
         "import os, signal, sys; from peopleboy.scenarios.cli import main\n"
         "import peopleboy.scenarios.loop.tracker_by_name as oracle\n"
+        f"signal.signal(signal.{name}, signal.SIG_DFL)\n"  # under nohup, SIGHUP would be ignored
         f"oracle.OracleTracker.update = lambda *_: os.kill(os.getpid(), signal.{name})\n"
         "main(sys.argv[1:])"
     )
