@@ -71,9 +71,9 @@ dependencies, so that loading one tracker, or listing the names, does not load a
 DETECTION_TRACKER: Final = "detection"
 CONTOUR_TRACKER: Final = "contour"
 DEFAULT_TRACKER: Final = DETECTION_TRACKER
-BY_CONTRAST: Final = frozenset({DETECTION_TRACKER})
+BY_CONTRAST: Final = frozenset({DETECTION_TRACKER, "attentive"})
 """Trackers that use only the contrast of a thermal image, not its absolute temperatures."""
-WITH_DETECTOR: Final = (DETECTION_TRACKER, "handover", "fused", "attentive-fused")
+WITH_DETECTOR: Final = (DETECTION_TRACKER, "handover", "fused", "attentive")
 """Trackers that can use a user's detector in place of the learned one; it is their second argument."""
 
 
@@ -114,16 +114,6 @@ def _thermal_sensor(
     from peopleboy.tracker.sensors.thermal import ThermalSensor
 
     return ThermalSensor(config, None if detector is None else OwnDetector(detector, config))
-
-
-def _fused_tracker(detector: "ImageDetector | None") -> "PeopleTracker":
-    from peopleboy.tracker.sensors.depth import DepthSensor
-    from peopleboy.tracker.sensors.panorama import PanoramaSensor
-    from peopleboy.tracker.tracking.config import FUSED
-    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
-
-    ahead = (_thermal_sensor(detector, FUSED), DepthSensor(tracker=FUSED))
-    return PeopleTracker(ahead, FUSED, optional=(PanoramaSensor(tracker=FUSED),))
 
 
 @TRACKERS.register(
@@ -273,28 +263,36 @@ def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
     "people by colours, motion and stature.",
 )
 def _fused(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
-    return _fused_tracker(detector)
+    from peopleboy.tracker.sensors.depth import DepthSensor
+    from peopleboy.tracker.sensors.panorama import PanoramaSensor
+    from peopleboy.tracker.tracking.config import FUSED
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
+
+    ahead = (_thermal_sensor(detector, FUSED), DepthSensor(tracker=FUSED))
+    return PeopleTracker(ahead, FUSED, optional=(PanoramaSensor(tracker=FUSED),))
 
 
 @TRACKERS.register(
     "attentive",
-    scope="the situation-awareness thesis, chapter 5, with extensions",
-    summary="Adds re-identification to `contour`. Learns the appearance of each person, and restores the "
-    "id of a person who comes back within ten minutes. Unknown people get new ids. A robot that "
-    "follows a person keeps searching until the person is visible again.",
+    scope="the default, with the long memory of the situation-awareness thesis, chapter 5",
+    summary="Like `detection`, but remembers people for ten minutes: a person who comes back gets the old id, and "
+    "unknown people get new ids. A robot that follows a person keeps searching until the person is visible "
+    "again.",
 )
-def _attentive(rng: "np.random.Generator") -> Tracker:
-    from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
-    from peopleboy.tracker.attention.people.recogniser import ByColour
+def _attentive(
+    rng: "np.random.Generator",  # noqa: ARG001
+    detector: "ImageDetector | None" = None,
+) -> Tracker:
+    from peopleboy.tracker.tracking.config import ATTENTIVE
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
-    return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByColour())
+    return PeopleTracker((_thermal_sensor(detector, ATTENTIVE),), ATTENTIVE)
 
 
 @TRACKERS.register(
     "attentive-printed",
     scope="the situation-awareness thesis, chapter 5",
-    summary="Like `attentive`, but re-identifies people with the attention model exactly as printed in "
-    "that chapter.",
+    summary="Adds re-identification to `contour`, with the attention model exactly as printed in that chapter.",
 )
 def _attentive_printed(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.attention.attention_config import PRINTED
@@ -303,21 +301,6 @@ def _attentive_printed(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.attention.people.recogniser import ByFocus
 
     return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByFocus(PRINTED), AS_FOUND)
-
-
-@TRACKERS.register(
-    "attentive-fused",
-    scope="as `fused` and `attentive`",
-    summary="Adds the re-identification of `attentive` to `fused`, with all colour cameras.",
-)
-def _attentive_fused(
-    rng: "np.random.Generator",  # noqa: ARG001
-    detector: "ImageDetector | None" = None,
-) -> Tracker:
-    from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
-    from peopleboy.tracker.attention.people.recogniser import ByColour
-
-    return AttentiveTracker(_fused_tracker(detector), ByColour())
 
 
 def is_own(name: str) -> bool:

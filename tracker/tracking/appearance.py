@@ -67,6 +67,7 @@ _PARTS: Final = ((0.18, 0.5), (0.55, 0.9))  # top and bottom of torso and legs, 
 _WIDE: Final = 0.6  # share of the box's width that is sampled
 _BINS: Final = (4, 8, 8)  # bins of brightness and of both opponent colours
 _SPREAD: Final = 60.0  # range of the opponent colours that the bins cover
+_WHITE: Final = 256.0
 _DARK: Final = 24.0  # grey below which colours are ignored
 _LEAST_PX: Final = 12
 _LEAST_INSIDE: Final = 0.6
@@ -92,7 +93,7 @@ def describe_colours(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     image = frame.rgb(COLOUR)
     there = boxes_in_other_image(frame, boxes, THERMAL, COLOUR, view)
     least = -np.inf if view.floor_m is None else _LEAST_INSIDE
-    _describe(image, there, np.array(_PARTS), least, *_BIN_OF, result)
+    _describe(image, there, np.array(_PARTS), least, result)
     return result
 
 
@@ -107,7 +108,7 @@ def describe_samples(samples: NDArray[np.uint8], down: Floats) -> Colours:
     size = FEATURES // PARTS
     for part, (first, last) in enumerate(_PARTS):
         pixels = samples[(down >= first) & (down < last)]
-        is_seen = _histogram(pixels[None], *_BIN_OF, result[part * size : (part + 1) * size])
+        is_seen = _histogram(pixels[None], result[part * size : (part + 1) * size])
         if part == 0 and not is_seen:
             break
     return result
@@ -141,28 +142,12 @@ def _are_seen(colours: Colours) -> NDArray[np.bool_]:
     return np.asarray(colours.reshape(len(colours), PARTS, -1).max(axis=2) > 0.0)
 
 
-def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:
-    """Return the bins of values; values outside -_SPREAD to _SPREAD are in the outer bins."""
-    return np.clip(np.floor((values + _SPREAD) * bins / (2.0 * _SPREAD)), 0, bins - 1).astype(np.uint8)
-
-
-# Lookup tables for red + green + blue (from 0), red - green (from -255), 2 blue - red - green (from -510).
-_BIN_OF: Final = (
-    _bins_of(np.arange(766.0) / 3.0 * (_SPREAD / 128.0) - _SPREAD, _BINS[0]),
-    _bins_of(np.arange(-255.0, 256.0), _BINS[1]),
-    _bins_of(np.arange(-510.0, 511.0) / 2.0, _BINS[2]),
-)
-
-
 @njit(cache=True, nogil=True)
 def _describe(
     image: NDArray[np.uint8],
     boxes: Floats,
     parts: Floats,
     least: float,
-    of_light: NDArray[np.uint8],
-    of_red: NDArray[np.uint8],
-    of_blue: NDArray[np.uint8],
     result: Colours,
 ) -> None:  # pragma: no cover
     """Describe boxes (M, 4) of an image (H, W, 3) by parts (2, 2) with a least share inside the image."""
@@ -175,7 +160,7 @@ def _describe(
             upper, lower = top + first * height, top + last * height
             pixels = image[max(round(upper), 0) : max(round(lower), 0), begin:end]
             bins = result[number, part * size : (part + 1) * size]
-            is_seen = _histogram(pixels, of_light, of_red, of_blue, bins)
+            is_seen = _histogram(pixels, bins)
             if part == 0 and not is_seen:
                 break
             if is_seen and (min(lower, rows) - max(upper, 0.0)) / (lower - upper) < least:
@@ -183,28 +168,37 @@ def _describe(
 
 
 @njit(cache=True, nogil=True)
-def _histogram(
-    pixels: NDArray[np.uint8],
-    of_light: NDArray[np.uint8],
-    of_red: NDArray[np.uint8],
-    of_blue: NDArray[np.uint8],
-    bins: Colours,
-) -> bool:  # pragma: no cover
+def _histogram(pixels: NDArray[np.uint8], bins: Colours) -> bool:  # pragma: no cover
     """Return square roots of pixel shares (h, w, 3) by brightness and opponent colours, if enough are seen.
 
-    The squares of all parts add up to 1.
+    Each pixel is shared by the eight nearest bins, so that a small change of light has a small effect. The
+    squares of all parts add up to 1.
     """
-    count, total = pixels.shape[0] * pixels.shape[1], 0
+    count, total = pixels.shape[0] * pixels.shape[1], 0.0
     if count < _LEAST_PX:
         return False
+    low, over, strides = np.empty(3, np.int64), np.empty(3, np.float32), (_BINS[1] * _BINS[2], _BINS[2], 1)
     for row in pixels:
         for one in row:
-            red, green, blue = int(one[0]), int(one[1]), int(one[2])
-            light = red + green + blue
-            at = of_light[light] * _BINS[1] * _BINS[2] + of_red[red - green + 255] * _BINS[2]
-            bins[at + of_blue[2 * blue - red - green + 510]] += np.float32(1.0)
-            total += light
-    is_light = bool(total / (3 * count) >= _DARK)
+            red, green, blue = float(one[0]), float(one[1]), float(one[2])
+            total += red + green + blue
+            values = (
+                (red + green + blue) / (3.0 * _WHITE),
+                (red - green) / (2.0 * _SPREAD) + 0.5,
+                (2.0 * blue - red - green) / (4.0 * _SPREAD) + 0.5,
+            )
+            for axis in range(3):
+                place = min(max(values[axis] * _BINS[axis] - 0.5, 0.0), _BINS[axis] - 1.0)
+                low[axis] = min(int(place), _BINS[axis] - 2)
+                over[axis] = np.float32(place - low[axis])
+            for corner in range(8):
+                share, at = np.float32(1.0), 0
+                for axis in range(3):
+                    upper = (corner >> axis) & 1
+                    share *= over[axis] if upper else np.float32(1.0) - over[axis]
+                    at += (low[axis] + upper) * strides[axis]
+                bins[at] += share
+    is_light = bool(total / (3.0 * count) >= _DARK)
     for k in range(len(bins)):
         bins[k] = math.sqrt(bins[k] / np.float32(count)) / math.sqrt(PARTS) if is_light else 0.0
     return is_light

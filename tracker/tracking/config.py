@@ -37,8 +37,8 @@ class KalmanConfig:
     build: float = 0.04
     posture: float = 0.02
     floor_m: float = 0.08
-    shown: float = 0.5
-    toe_m: float = 0.0
+    shown: float = 0.8
+    toe_m: float = 0.12
     nearest_m: float = NEAREST_M
 
 
@@ -113,13 +113,14 @@ class ReidentificationConfig:
         walk_m, walk_m_s: standard deviation of how far a lost person is from where they were last seen, and
             its growth.
         stray_m_s: the same growth of how far they are from where they would be if they had walked on.
-        near: log-odds of a person who is found where another was lost.
+        room_m2: area in which another person may be found.
         least_near: least log-odds of motion.
         statures: standard deviation of the log statures of people.
         stature_error: error of an estimate beyond its own.
         least: log-odds from which a new track is a lost one.
         unclear: how much less than these leave the identity of a new track open,
         undecided_s: for at most so long.
+        is_final: whether a new number is always a new person, so that a robot waits for the number it follows.
     """
 
     lost_s: float = 0.2
@@ -131,17 +132,18 @@ class ReidentificationConfig:
     colour_neutral: float = 0.75
     colour_most: float = 2.0
     colour_unknown: float = 0.0
-    uses_place: bool = False
+    uses_place: bool = True
     walk_m: float = 0.4
     walk_m_s: float = 0.5
     stray_m_s: float = 0.3
-    near: float = 2.0
+    room_m2: float = 40.0
     least_near: float = -4.0
     statures: float = 0.05
     stature_error: float = 0.03
-    least: float = 1.0
-    unclear: float = 0.0
+    least: float = 0.0
+    unclear: float = 3.0
     undecided_s: float = 0.5
+    is_final: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -290,7 +292,7 @@ class PeopleTrackerConfig:
         default_factory=lambda: AssociationConfig(highest=2.3, lost_s=4.0)
     )
     reidentification_uncalibrated: ReidentificationConfig = field(
-        default_factory=lambda: ReidentificationConfig(same=0.65)
+        default_factory=lambda: ReidentificationConfig(same=0.65, uses_place=False)
     )
     existence_depth: ExistenceConfig = field(default_factory=ExistenceConfig)
     association_depth: AssociationConfig = field(
@@ -302,7 +304,7 @@ class PeopleTrackerConfig:
     )
     colour: ColourDetectionConfig = field(default_factory=ColourDetectionConfig)
     detector_scores: DetectorScoreConfig = field(default_factory=DetectorScoreConfig)
-    stops_hidden: bool = False
+    stops_hidden: bool = True
     hidden_share: float = 0.4
 
 
@@ -319,23 +321,28 @@ _ALL_ROUND: Final = ExistenceConfig(
     forget_s=20.0,
     brief_forget_s=10.0,
 )
-_BY_PLACE: Final = ReidentificationConfig(uses_place=True, colour_unknown=-2.0, unclear=3.0)
+_UNKNOWN_IS_OTHER: Final = ReidentificationConfig(colour_unknown=-2.0, least=1.0)
+
+ATTENTIVE: Final = PeopleTrackerConfig(
+    existence=ExistenceConfig(forget_s=600.0), reidentification=ReidentificationConfig(is_final=True)
+)
+"""Settings for people who come back after minutes, checked on seeds 101 to 107 of `absence_10s`."""
 
 FUSED: Final = PeopleTrackerConfig(
-    motion=KalmanConfig(toe_m=0.12, shown=0.8, nearest_m=-math.inf),
+    motion=KalmanConfig(nearest_m=-math.inf),
     existence_panorama=_ALL_ROUND,
     existence=_LONG_MEMORY,
     existence_depth=_LONG_MEMORY,
     association=AssociationConfig(lost_s=0.5),
     association_depth=AssociationConfig(overlap=0.0, highest=2.4, lost_s=0.5),
-    reidentification=_BY_PLACE,
-    stops_hidden=True,
+    reidentification=_UNKNOWN_IS_OTHER,
 )
 """Settings for several sensors, chosen on seeds 100 and 101 of the suite `occlusion`."""
 
 PANORAMIC: Final = PeopleTrackerConfig(
     motion=KalmanConfig(acceleration_m_s2=(0.45, 0.2, 0.45), nearest_m=-math.inf),
     existence_panorama=_ALL_ROUND,
-    reidentification=_BY_PLACE,
+    reidentification=_UNKNOWN_IS_OTHER,
+    stops_hidden=False,
 )
 """Settings for the panorama alone, chosen on seeds 100 to 102 of the scenarios `panoramic_...`."""

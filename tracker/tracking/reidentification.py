@@ -100,20 +100,24 @@ def same_person_log_odds(
 def _by_motion(lost: Candidates, gone_s: Floats, found: Candidates, config: ReidentificationConfig) -> Floats:
     """Return log-odds (L, N) by the way from where people were last seen, or from where they walked to.
 
-    A person who is lost has either stopped or turned, or has walked on.
+    A person who is lost has either stopped or turned, or has walked on; another person may be anywhere.
     """
-    still = _squared(lost.places_m, config.walk_m + config.walk_m_s * gone_s, lost, found)
+    still = _nearness(lost.places_m, config.walk_m + config.walk_m_s * gone_s, lost, found, config)
     walked_to_m = lost.places_m + gone_s[:, None] * lost.velocities_m_s
-    on = _squared(walked_to_m, config.walk_m + config.stray_m_s * gone_s, lost, found)
-    return np.asarray(np.maximum(config.near - 0.5 * np.minimum(still, on), config.least_near))
+    on = _nearness(walked_to_m, config.walk_m + config.stray_m_s * gone_s, lost, found, config)
+    return np.asarray(np.maximum(np.maximum(still, on), config.least_near))
 
 
-def _squared(places_m: Floats, way_m: Floats, lost: Candidates, found: Candidates) -> Floats:
-    """Return the squared Mahalanobis distances (L, N) of people found from places, after ways (L,) [m]."""
+def _nearness(
+    places_m: Floats, way_m: Floats, lost: Candidates, found: Candidates, config: ReidentificationConfig
+) -> Floats:
+    """Return log-odds (L, N) that people found come from places after ways (L,) [m], not from anywhere."""
     away = found.places_m[None] - places_m[:, None]
     walked_m2 = np.square(way_m)[:, None, None, None] * np.eye(2)
     spread = found.variance_m2[None] + lost.variance_m2[:, None] + walked_m2
-    return np.asarray((away[:, :, None] @ inverse(spread) @ away[:, :, :, None])[:, :, 0, 0])
+    squared = (away[:, :, None] @ inverse(spread) @ away[:, :, :, None])[:, :, 0, 0]
+    area_m2 = 2.0 * np.pi * np.sqrt(np.linalg.det(spread))
+    return np.asarray(np.log(config.room_m2 / np.minimum(area_m2, config.room_m2)) - 0.5 * squared)
 
 
 def _by_stature(lost: Candidates, found: Candidates, config: ReidentificationConfig) -> Floats:

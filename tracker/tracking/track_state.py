@@ -13,7 +13,7 @@ from peopleboy.tracker.tracking.config import ExistenceConfig
 
 _LEARNING: Final = 0.1  # share of the new appearance in the remembered one
 _LEARNING_SOON: Final = 0.2  # the same in the recent appearance that is compared with it
-_OWN: Final = 0.6  # Bhattacharyya coefficient above which a person resembles their own earlier appearance
+_OWN: Final = 0.7  # Bhattacharyya coefficient above which a person resembles their own earlier appearance
 
 
 class DetectionEvidence(NamedTuple):

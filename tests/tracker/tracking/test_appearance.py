@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.tracking.appearance import (
-    _BIN_OF,
     FEATURES,
     PARTS,
     _histogram,
@@ -90,19 +89,29 @@ def test_legs_are_remembered_while_the_torso_is_learned() -> None:
 
 
 @given(pixels=arrays(np.uint8, st.tuples(st.integers(3, 9), st.integers(4, 9), st.just(3))))
-def test_colours_are_the_shares_of_numpys_own_bins(pixels: NDArray[np.uint8]) -> None:
+def test_each_pixel_is_shared_linearly_by_the_nearest_bins(pixels: NDArray[np.uint8]) -> None:
     red, green, blue = pixels.reshape(-1, 3).T.astype(np.float64)
     light = (red + green + blue) / 3.0
     result = np.zeros(FEATURES // PARTS, np.float32)
-    is_confirmed = _histogram(pixels, *_BIN_OF, result)
-    assert is_confirmed == (light.mean() >= 24.0)
-    if not is_confirmed:
+    is_light = _histogram(pixels, result)
+    assert is_light == (light.mean() >= 24.0)
+    if not is_light:
         assert not result.any()
         return
-    axes = [light, np.clip(red - green, -59.9, 59.9), np.clip(blue - (red + green) / 2.0, -59.9, 59.9)]
-    edges = [np.linspace(0.0, 256.0, 5), np.linspace(-60.0, 60.0, 9), np.linspace(-60.0, 60.0, 9)]
-    counts, _ = np.histogramdd(np.stack(axes, axis=1), edges)
-    np.testing.assert_allclose(PARTS * result**2, counts.ravel() / len(light), atol=1e-6)
+    shares = (light / 256.0, (red - green) / 120.0 + 0.5, (blue - (red + green) / 2.0) / 120.0 + 0.5)
+    hats = [
+        np.maximum(1.0 - np.abs(np.clip(share * bins - 0.5, 0.0, bins - 1)[:, None] - np.arange(bins)), 0.0)
+        for share, bins in zip(shares, (4, 8, 8), strict=True)
+    ]
+    expected = np.einsum("ni,nj,nk->ijk", *hats) / len(light)
+    np.testing.assert_allclose(PARTS * result**2, expected.ravel(), atol=1e-5)
+
+
+@pytest.mark.parametrize("shift", [4, 8, 12])
+def test_a_little_more_light_changes_colours_little(shift: int) -> None:
+    darker = worn(BOX, RED, BLUE)
+    lighter = worn(BOX, *(tuple(grey + shift for grey in colour) for colour in (RED, BLUE)))
+    assert colour_similarity(darker, lighter) > 0.9
 
 
 @given(st.integers(0, 10_000), st.sampled_from([0.1, 0.2, 1.0]))

@@ -15,7 +15,12 @@ from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.sensors.scheduled_detector import ScheduledDetector
 from peopleboy.tracker.sensors.thermal import ThermalSensor
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.tracking.config import AssociationConfig, ExistenceConfig, PeopleTrackerConfig
+from peopleboy.tracker.tracking.config import (
+    AssociationConfig,
+    ExistenceConfig,
+    KalmanConfig,
+    PeopleTrackerConfig,
+)
 from peopleboy.tracker.tracking.measurement import BoxMeasurement
 from peopleboy.tracker.tracking.motion_filter import predicted_boxes
 from peopleboy.tracker.tracking.people_tracker import PeopleTracker
@@ -115,7 +120,8 @@ def test_who_is_seen_by_a_known_camera_has_a_place_on_the_floor_and_nobody_else(
     tracker = PeopleTracker((fixed_sensor(FixedDetections(boxes)),))
     (track,) = [tracker.update(frame) for frame in calibrated(boxes)][-1]
     assert track.place is not None
-    assert track.place.position_m == pytest.approx((5.0, -0.8), abs=0.02)
+    expected = (5.0 + KalmanConfig().toe_m, -0.8)  # the feet end at the front foot
+    assert track.place.position_m == pytest.approx(expected, abs=0.02)
     assert [track.place for track in tracked(boxes)[-1]] == [None]
 
 

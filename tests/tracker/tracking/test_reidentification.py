@@ -79,19 +79,28 @@ def odds_of(lost: Candidates, found: Candidates, gone_s: float, config: Reidenti
     return same_person_log_odds(lost, np.full(len(lost.colours), gone_s), found, config)
 
 
-BY_PLACE = ReidentificationConfig(uses_place=True)
+BY_PLACE = ReidentificationConfig()
+BY_COLOUR = ReidentificationConfig(uses_place=False)
 HERE, FAR = (0.0, 5.0), (3.0, 7.0)
 
 
 def test_a_new_track_continues_the_lost_one_with_the_same_colours() -> None:
     lost, new = people([wearing(0.0), wearing(1.0)], [HERE, FAR]), people([wearing(0.9)], [HERE])
-    assert assign_lost(odds_of(lost, new, 15.0, CONFIG)) == {0: 1}
-    assert assign_lost(odds_of(people([wearing(0.0)], [HERE]), new, 15.0, CONFIG)) == {}
+    for config in (BY_PLACE, BY_COLOUR):
+        assert assign_lost(odds_of(lost, new, 15.0, config)) == {0: 1}
+        assert assign_lost(odds_of(people([wearing(0.0)], [HERE]), new, 15.0, config)) == {}
 
 
-def test_without_colours_a_new_track_continues_no_lost_one() -> None:
+def test_without_colours_a_new_track_continues_a_lost_one_by_its_place_alone() -> None:
     lost, new = people([wearing(0.0), wearing(0.0)], [HERE, FAR]), people([np.zeros(FEATURES)], [HERE])
-    assert assign_lost(odds_of(lost, new, 15.0, CONFIG)) == {}
+    assert assign_lost(odds_of(lost, new, 15.0, BY_COLOUR)) == {}
+    assert assign_lost(odds_of(lost, new, 0.5, BY_PLACE)) == {0: 0}
+
+
+def test_a_place_is_less_evidence_the_longer_a_person_has_been_lost_and_none_after_a_while() -> None:
+    lost, new = people([wearing(1.0)], [HERE]), people([np.zeros(FEATURES)], [HERE])
+    odds = [float(odds_of(lost, new, gone_s, BY_PLACE)[0, 0]) for gone_s in (0.3, 1.0, 3.0, 30.0, 600.0)]
+    assert odds[0] > odds[1] > odds[2] > odds[3] == pytest.approx(odds[4], abs=0.01)
 
 
 def test_of_two_dressed_alike_each_continues_the_track_that_was_lost_nearest() -> None:
