@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from peopleboy.tracker.sensors.thermal import ThermalSensor
     from peopleboy.tracker.track import Box, Track
     from peopleboy.tracker.tracking.config import PeopleTrackerConfig
-    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
 
 @runtime_checkable
@@ -275,9 +274,9 @@ def _fused(rng: "np.random.Generator", detector: "ImageDetector | None" = None) 
 @TRACKERS.register(
     "attentive",
     scope="the default, with the long memory of the situation-awareness thesis, chapter 5",
-    summary="Like `detection`, but remembers people for ten minutes: a person who comes back gets the old id, and "
-    "unknown people get new ids. A robot that follows a person keeps searching until the person is visible "
-    "again.",
+    summary="Like `detection`, but remembers people for ten minutes: a person who comes back gets the old "
+    "id, and unknown people get new ids. A robot that follows a person keeps searching until the person "
+    "is visible again.",
 )
 def _attentive(
     rng: "np.random.Generator",  # noqa: ARG001
@@ -292,7 +291,8 @@ def _attentive(
 @TRACKERS.register(
     "attentive-printed",
     scope="the situation-awareness thesis, chapter 5",
-    summary="Adds re-identification to `contour`, with the attention model exactly as printed in that chapter.",
+    summary="Adds re-identification to `contour`, with the attention model exactly as printed in that "
+    "chapter.",
 )
 def _attentive_printed(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.attention.attention_config import PRINTED

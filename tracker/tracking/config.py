@@ -120,7 +120,7 @@ class ReidentificationConfig:
         least: log-odds from which a new track is a lost one.
         unclear: how much less than these leave the identity of a new track open,
         undecided_s: for at most so long.
-        is_final: whether a new number is always a new person, so that a robot waits for the number it follows.
+        is_final: whether a new number is always a new person, so that a robot waits for the one it follows.
     """
 
     lost_s: float = 0.2

@@ -175,6 +175,7 @@ def test_the_registered_ones_know_people_again_and_want_colours(name):
     assert knows_again(tracker)
     assert {THERMAL, COLOUR} <= set(tracker.cameras)
     assert not knows_again(make_tracker("contour"))
+    assert not knows_again(make_tracker("detection"))
 
 
 def test_settings_out_of_range_are_refused():
