@@ -24,7 +24,7 @@ from peopleboy.tracker.attention.people.person_views import PersonView, box_in
 from peopleboy.tracker.attention.people.recogniser import ByColour, ColourLook
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.track import Box, Status, Track
-from peopleboy.tracker.trackers import make_tracker
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 SCENARIO, SEED = "absence_10s", 0
 SHOWN_S = (3.0, 13.5, 24.0)
@@ -65,8 +65,7 @@ def absence() -> Figure:
 def _watch() -> _Film:
     scenario, film = load_scenario(SCENARIO), _Film()
     calibrations = calibrations_of(scenario.world(SEED).robot.cameras)
-    tracker = make_tracker("attentive", SEED)
-    assert isinstance(tracker, AttentiveTracker)
+    tracker = AttentiveTracker(make_tracker(DEFAULT_TRACKER, SEED), ByColour())
     before, look, seen = None, None, 0
     for world, observation in blind_drive(scenario, SEED):
         frame = Frame.from_observation(observation, before, calibrations)
