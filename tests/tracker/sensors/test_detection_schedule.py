@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.sensors.detection_schedule import DetectionSchedule, Schedule, ThermalMemory
 from peopleboy.tracker.sensors.template import Template
@@ -157,11 +156,9 @@ def test_who_is_partly_outside_the_image_is_looked_at() -> None:
 
 
 def test_who_is_followed_is_as_sure_as_when_looked_at() -> None:
-    who = targets()
-    aim = Schedule(True, {}, {1: BOXES[1] + 1.0})
-    seen = aim.with_followed(Detections.from_trees(BOXES[:1], np.array([0.5])), memories(who))
-    np.testing.assert_array_equal(seen.box, [BOXES[0], BOXES[1] + 1.0])
-    assert (seen.score.tolist(), seen.trees.tolist()) == ([0.5, 2.0], [0.5, 2.0])
+    seen = Schedule(True, {}, {1: BOXES[1] + 1.0}).located(memories(targets()))
+    np.testing.assert_array_equal(seen.box, [BOXES[1] + 1.0])
+    assert (seen.score.tolist(), seen.trees.tolist()) == ([2.0], [2.0])
 
 
 def test_every_image_is_searched_everywhere_where_no_pause_is_asked_for() -> None:
