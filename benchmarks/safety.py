@@ -44,7 +44,7 @@ DRIVES_M: Final = 1.0
 LASTS_S: Final = 5.0  # duration of a fault
 _CARRIED_M: Final = 0.2  # farther than the robot drives within a frame
 _APART_M: Final = 0.3  # half the width of a person, and more
-_SMALL: Final = {"width_px": 80, "height_px": 60}  # for true tracks, which need no image
+SMALL: Final = {"width_px": 80, "height_px": 60}  # for true tracks, which need no image
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,9 +128,7 @@ def world_of(seed: int, tracker: str, duration_s: float) -> Scenario:
     data["robot"] = {key: data["robot"][key] for key in ("at_m", "heading_deg", "cameras")}
     data["robot"]["behaviour"], data["physics"] = "follow_person", "kinematic"
     if tracker == ORACLE:
-        data["robot"]["cameras"] = {
-            name: camera | _SMALL for name, camera in data["robot"]["cameras"].items()
-        }
+        data["robot"]["cameras"] = {name: camera | SMALL for name, camera in data["robot"]["cameras"].items()}
     return parse_scenario(data, source=f"world {seed}", folder=Path())
 
 

@@ -19,9 +19,11 @@ import pytest
 import yaml
 
 from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios import cli
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.recorded_drives import pack_drive, read_drive
 from peopleboy.sim.physics.urdf import read_links, read_urdf
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.runs import toy_runs as toy
@@ -235,6 +237,24 @@ TAMPERED = {
     "metrics.json": lambda path: path.write_bytes(b"\xff\xfe{}"),
     "events.jsonl": lambda path: path.write_text('{"frame": 1, "time_s": 0.0, "kind": 3, "who": "x"}\n'),
 }
+
+
+def test_a_table_whose_names_are_no_text_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = toy.write_run(tmp_path / "run") / "truth.parquet"
+    content = path.read_bytes()
+    path.write_bytes(content.replace(b"joints_m", b"join\xbes_m"))
+    assert "truth.parquet" in refusal(capsys, "evaluate", tmp_path / "run")
+
+
+def test_a_recorded_drive_without_a_value_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "drive.parquet"
+    path.write_bytes(pack_drive([Command(linear_m_s=0.1, angular_rad_s=0.0)] * 2))
+    table = pq.read_table(path)
+    pq.write_table(table.set_column(0, table.schema.field(0), [[0.1, None]]), path)
+    with pytest.raises(BadInput, match=r"drive\.parquet.* without a value"):
+        read_drive(path)
 
 
 @pytest.mark.parametrize("name", TAMPERED)

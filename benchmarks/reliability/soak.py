@@ -16,8 +16,10 @@ import click
 import pybullet
 
 from benchmarks import call
+from benchmarks.safety import SMALL
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import parse_scenario
+from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import Failure
 from peopleboy.scenarios.loop.loop import Tick
@@ -32,8 +34,14 @@ _ROW: Final = "{:12} {:8}  {:10.0f}  {:11}  {:7}  {:8.1f}"
 _CLIENTS: Final = 1024  # the most that PyBullet has
 
 
-def busy_hall(duration_s: float) -> Scenario:
-    """Return a hall in which two people are present at any time, and new ones take their turn."""
+def busy_hall(duration_s: float, *, is_small: bool = False) -> Scenario:
+    """Return a hall in which two people are present at any time, and new ones take their turn.
+
+    Args:
+        duration_s: [s] length of the run.
+        is_small: whether cameras have small images, which take less time.
+    """
+    cameras = {name: SMALL | {"kind": name} for name in ("thermal", "colour")} if is_small else {}
     turn_s, kinds = duration_s / _TURNS, get_args(Failure)
     return parse_scenario(
         {
@@ -42,7 +50,7 @@ def busy_hall(duration_s: float) -> Scenario:
             "duration_s": duration_s,
             "place": {"kind": "room", "length_m": 12.0, "width_m": 8.0},
             "people": [_visitor(number, turn_s, duration_s) for number in range(_TURNS)],
-            "robot": {"at_m": [1.0, 0.0], "behaviour": "follow_person"},
+            "robot": {"at_m": [1.0, 0.0], "behaviour": "follow_person", "cameras": cameras},
             "faults": [
                 {"kind": kinds[n % len(kinds)], "from_s": (n + 0.5) * turn_s, "lasts_s": turn_s / 10}
                 for n in range(_TURNS)
@@ -116,15 +124,15 @@ class UsageLog:
         return self.rows[-1].memory_mb - self.rows[0].memory_mb if self.rows else 0.0
 
 
-def soak_run(hours: float, log: UsageLog) -> None:
-    """Run the busy hall for many hours."""
+def soak_run(hours: float, tracker: str, log: UsageLog) -> None:
+    """Run the busy hall for many hours, with small images if the tracker needs none."""
 
     def note(tick: Tick, _frames: int) -> None:
         log.add(tick.frame)
 
     with TemporaryDirectory() as folder:
-        options = RunOptions(seed=0, out=Path(folder) / "run", record=False)
-        run(busy_hall(3600.0 * hours), options, note)
+        options = RunOptions(seed=0, out=Path(folder) / "run", tracker=tracker, record=False)
+        run(busy_hall(3600.0 * hours, is_small=tracker == ORACLE), options, note)
 
 
 def soak_environments(count: int, log: UsageLog) -> None:
@@ -140,15 +148,16 @@ def soak_environments(count: int, log: UsageLog) -> None:
 
 @click.command()
 @click.option("--hours", default=8.0, show_default=True, help="Simulated hours of the run.")
+@click.option("--tracker", default="detection", show_default=True, help="Tracker of the run.")
 @click.option("--environments", default=2000, show_default=True, help="Number of environments.")
-def main(hours: float, environments: int) -> None:
+def main(hours: float, tracker: str, environments: int) -> None:
     """Check that memory does not grow with the length of a run or the number of environments."""
     frames = round(hours * 3600 * 15)
     opened = UsageLog(max(environments // 10, 1), "environments")
     ran = UsageLog(max(frames // 10, 1), "frames")
     click.echo("step                  memory, MB  descriptors  clients  time, ms")
     soak_environments(environments, opened)
-    soak_run(hours, ran)
+    soak_run(hours, tracker, ran)
     sys.exit(1 if max(opened.growth_mb, ran.growth_mb) > MOST_GROWTH_MB else 0)
 
 

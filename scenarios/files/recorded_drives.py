@@ -59,7 +59,10 @@ def read_drive(path: Path) -> tuple[Command, ...]:
         BadInput: the file cannot be read as a drive.
     """
     try:
-        rows = pq.read_table(path, schema=_STEPS).to_pylist()
-    except (OSError, pa.ArrowException) as error:
-        raise BadInput(f"{path}: cannot be read as a recorded drive: {error}") from error
-    return tuple(Command(**row) for row in rows)
+        table = pq.read_table(path, schema=_STEPS)
+    except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
+        reason = " ".join(str(error).split())[:120]
+        raise BadInput(f"{path}: cannot be read as a recorded drive: {reason}") from error
+    if any(column.null_count for column in table.columns):
+        raise BadInput(f"{path}: cannot be read as a recorded drive: has rows without a value")
+    return tuple(Command(**row) for row in table.to_pylist())

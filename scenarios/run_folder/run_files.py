@@ -197,7 +197,7 @@ def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Ta
             if was != must:
                 raise BadInput(f"{path}: column {name!r} must be {must}, got {was}; {_AGAIN}")
         table = pq.read_table(path, columns=list(columns), filesystem=LOCAL)
-    except (OSError, pa.ArrowException) as error:
+    except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
         raise BadInput(f"{path}: cannot be read as a table of a run; {_AGAIN}") from error
     for name in columns:
         if table[name].null_count and name not in MAY_BE_EMPTY:
