@@ -5,9 +5,11 @@ from __future__ import annotations
 import io
 import json
 import os
+import shutil
 from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from datetime import timedelta
+from pathlib import Path
 from typing import Any
 
 import cv2
@@ -28,6 +30,7 @@ from peopleboy.tracker.footage.footage_truth import load_truth
 from peopleboy.tracker.footage.read_picture import read_pages, read_picture
 from peopleboy.tracker.networks.weights_archive import ArraySpec, WeightsArchive
 from tests.helpers.calls.command_line import run_cli
+from tests.helpers.runs import toy_runs as toy
 
 fuzzed = settings(
     max_examples=int(os.environ.get("FUZZ_EXAMPLES", "30")),
@@ -187,6 +190,29 @@ def test_command_lines(words: list[str]) -> None:
     errors = io.StringIO()
     with redirect_stderr(errors), redirect_stdout(io.StringIO()):
         assert run_cli(*words) in (0, 2)
+    assert "Traceback" not in errors.getvalue()
+
+
+@pytest.fixture(scope="module")
+def whole_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return toy.write_run(tmp_path_factory.mktemp("whole") / "run")
+
+
+@fuzzed
+@given(st.data())
+def test_run_folders(whole_run: Path, tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
+    run = tmp_path_factory.getbasetemp() / "changed_run"
+    shutil.rmtree(run, ignore_errors=True)
+    shutil.copytree(whole_run, run)
+    names = sorted(str(path.relative_to(run)) for path in run.rglob("*") if path.is_file())
+    path = run / data.draw(st.sampled_from(names))
+    content = mutated(data, path.read_bytes())
+    path.write_bytes(
+        content[: data.draw(st.integers(0, len(content)))] if data.draw(st.booleans()) else content
+    )
+    errors = io.StringIO()
+    with redirect_stderr(errors), redirect_stdout(io.StringIO()):
+        assert run_cli("evaluate", run) in (0, 2)
     assert "Traceback" not in errors.getvalue()
 
 
