@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration
-from peopleboy.tracker.boxes import intersection
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Floats, Frame, FreshImages
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.human_windows import range_of, window_of
@@ -19,13 +18,11 @@ from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.window_model import WindowModel, shipped_windows
 from peopleboy.tracker.sensors.depth_visibility import (
     depth_visibility,
-    shoulders,
-    surface_m,
-    view_of,
+    describe_readings,
     warmth,
 )
 from peopleboy.tracker.sensors.guided_search import search_near
-from peopleboy.tracker.tracking.appearance import FEATURES, Colours, describe_samples
+from peopleboy.tracker.sensors.torso import find_torso
 from peopleboy.tracker.tracking.config import (
     STATURE_M,
     KalmanConfig,
@@ -41,11 +38,11 @@ from peopleboy.tracker.tracking.sensor import (
     Visibility,
     level_places,
     no_appearance,
+    project_boxes,
 )
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
-_USUAL_RATIO: Final = 0.24
-_BEHIND_M: Final = 0.2
+_USUAL_RATIO: Final = 0.2
 WIDE_M: Final = 0.42
 
 
@@ -74,11 +71,14 @@ class DepthSensorConfig:
         seen_through: share of readings behind a track, from which there is no person,
         certain_m: if the deviation of its position is less.
         own_share: share of readings at a track from which it is still there.
+        torso: width of the torso without arms, as a share of the stature, by that of its rows in the depth
+            image: gain and offset.
+        torso_sd_m: standard deviation of the middle of a visible torso across the line of sight.
     """
 
     size: HumanSize = field(default_factory=HumanSize)
     above: UDepthConfig = field(default_factory=UDepthConfig)
-    body_m: float = 0.115
+    body_m: float = 0.095
     floor_sd_m: float = 0.06
     depth_sd: float = 0.003
     narrow: float = 0.6
@@ -97,6 +97,8 @@ class DepthSensorConfig:
     seen_through: float = 0.7
     certain_m: float = 0.3
     own_share: float = 0.08
+    torso: tuple[float, float] = (0.65, 0.08)
+    torso_sd_m: float = 0.04
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,13 +118,16 @@ class DepthExplanation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Found:
-    """One detection: position in the robot frame, height, deviations, log-odds and box [px]."""
+    """One detection: position in the robot frame, height, deviations, log-odds and width of the torso.
+
+    The width is a share of the height; NaN if it is unknown.
+    """
 
     place_m: Floats
     head_m: float
     deviation_m: tuple[float, float, float]
     score: float
-    box: tuple[float, float, float, float]
+    ratio: float = math.nan
 
 
 class DepthSensor:
@@ -205,11 +210,7 @@ class DepthSensor:
         if calibration is None or predicted.origin_m is None or self._shape is None:
             return None
         view = Viewpoint.of(calibration, self._shape, predicted.origin_m, self._motion.toe_m)
-        boxes = predicted_boxes(predicted.states, view, predicted.ratio)
-        is_ahead = predicted.states.mean[:, 2] > view.at_m[2] + _BEHIND_M
-        rows, columns = self._shape
-        is_inside = intersection(boxes, np.array([-0.5, -0.5, columns, rows])) > 0.0
-        return ProjectedBoxes(boxes, is_inside & is_ahead)
+        return project_boxes(predicted, view, self._shape)
 
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
         """Remember nothing of tracks."""
@@ -231,14 +232,29 @@ class DepthSensor:
         score = self._model.look(view.colour, view.depth, found.z_m, window, kind)
         neutral = config.neutral_far if kind == "far" else config.neutral_near
         log_odds = min(max(config.score_gain * (score - neutral), -config.most), config.most)
-        log_odds += self._warmth(found, frame)
         ground = layout.floor.slope * found.z_m + layout.floor.offset_m
-        top = (found.box[1] - geometry.centre_v) * found.z_m / geometry.focal_px
-        narrow = max(config.size.width_m - config.size.width_sd_m / 2.0 - found.width_m, 0.0)
-        across = math.hypot(config.floor_sd_m, config.narrow * narrow)
+        tall_m = ground - (found.box[1] - geometry.centre_v) * found.z_m / geometry.focal_px
+        return self._measured(found, tall_m, log_odds + self._warmth(found, frame), view)
+
+    def _measured(self, found: PreDetection, tall_m: float, log_odds: float, view: RgbdView) -> _Found:
+        """Measure the position and the width of a person [m] tall, by the torso if it is visible."""
+        config, geometry = self._config, view.geometry
+        height_px = tall_m * geometry.focal_px / found.z_m
+        torso = find_torso(found, height_px, view.depth)
+        if torso is None:
+            narrow = max(config.size.width_m - config.size.width_sd_m / 2.0 - found.width_m, 0.0)
+            across, ratio = math.hypot(config.floor_sd_m, config.narrow * narrow), math.nan
+        else:
+            across, ratio = config.torso_sd_m, config.torso[0] * torso.width_px / height_px + config.torso[1]
+            x_m = (torso.middle_px - geometry.centre_u) * found.z_m / geometry.focal_px
+            found = replace(found, x_m=x_m)
         along = math.hypot(config.floor_sd_m, config.depth_sd * found.z_m**2)
         return _Found(
-            body_position(found, view), ground - top, (across, along, config.head_sd_m), log_odds, found.box
+            place_m=body_position(found, view),
+            head_m=tall_m,
+            deviation_m=(across, along, config.head_sd_m),
+            score=log_odds,
+            ratio=ratio,
         )
 
     def _warmth(self, found: PreDetection, frame: Frame) -> float:
@@ -268,7 +284,7 @@ class DepthSensor:
             if seen is None or (seen.warm is not None and seen.warm < 0.25):
                 continue
             deviation = (config.guided_sd_m, config.guided_sd_m, 1.0)
-            near[row] = _Found(seen.place_m, tall, deviation, config.guided_score, (0.0, 0.0, 0.0, 0.0))
+            near[row] = _Found(seen.place_m, tall, deviation, config.guided_score)
         return near
 
     def _detections(
@@ -296,7 +312,11 @@ class DepthSensor:
         for number, one in enumerate(found):
             colours[number] = describe_readings(frame, one.place_m, one.head_m)
         expected = predicted_boxes(predicted.states, view, predicted.ratio)
-        boxes = measurement_boxes(measurement, view, len(found))
+        ratios = np.array([one.ratio for one in found])
+        has_width = ~np.isnan(ratios)
+        ratios[~has_width] = _USUAL_RATIO
+        ratios[list(assigned.values())] = predicted.ratio[list(assigned)]
+        boxes = measurement_boxes(measurement, view, ratios)
         return SensorDetections(
             camera=DEPTH,
             boxes=boxes,
@@ -307,7 +327,7 @@ class DepthSensor:
             colours=colours,
             assigned=assigned,
             is_search=True,
-            has_width=False,
+            has_width=has_width,
             is_masked=True,
             settings=self._settings,
         )
@@ -332,42 +352,8 @@ class DepthSensor:
         return Visibility(hidden, is_present, is_absent)
 
 
-def measurement_boxes(measurement: FloorMeasurement, view: Viewpoint, count: int) -> Floats:
-    """Return the boxes (M, 4) [px] of people at measured positions, of usual width."""
-    states = measurement.initiate(range(count))
+def measurement_boxes(measurement: FloorMeasurement, view: Viewpoint, ratios: Floats) -> Floats:
+    """Return the boxes (M, 4) [px] of people at measured positions, of widths (M,) in heights."""
+    states = measurement.initiate(range(len(ratios)))
     states.mean[:, 6] = np.log(np.maximum(measurement.heads_m, 0.5) / STATURE_M)
-    return predicted_boxes(states, view, np.full(count, _USUAL_RATIO))
-
-
-_ROWS: Final = 32
-_COLUMNS: Final = 11
-_SAMPLED_M: Final = 0.4  # width in which colours are sampled
-_REACH_M: Final = 0.3  # from a person's surface, within which readings are the person's
-
-
-def describe_readings(frame: Frame, place_m: Floats, tall_m: float) -> Colours:
-    """Return the colours (FEATURES,) of a person at a position (2,), from the person's own readings.
-
-    Readings in front of or behind the person, and next to edges, are left out, so that occluders and
-    background do not count.
-    """
-    view = view_of(frame)
-    if view is None:
-        return np.zeros(FEATURES, np.float32)
-    left, top, width, height = shoulders(view, place_m, _SAMPLED_M, 0.0, tall_m)
-    depth, image = frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
-    if width <= 0.0:
-        return np.zeros(FEATURES, np.float32)
-    across = (np.arange(_COLUMNS) + 0.5) / _COLUMNS
-    down = (np.arange(_ROWS) + 0.5) / _ROWS
-    u = np.rint(left + width * across).astype(np.int64)
-    v = np.rint(top + height * down).astype(np.int64)
-    is_inside = (v >= 0) & (v < depth.shape[0])
-    v, down = v[is_inside], down[is_inside]
-    u = u[(u >= 0) & (u < depth.shape[1])]
-    own = np.abs(depth[np.ix_(v, u)] / 1000.0 - surface_m(view, place_m)) < _REACH_M
-    inner = own.copy()
-    inner[:, 1:] &= own[:, :-1]
-    inner[:, :-1] &= own[:, 1:]
-    rows, columns = np.nonzero(inner)
-    return describe_samples(image[v[rows], u[columns]], down[rows])
+    return predicted_boxes(states, view, ratios)

@@ -1,4 +1,4 @@
-"""What the depth image shows at the expected position of a person."""
+"""What the depth image and its colours show at the expected position of a person."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.geometry.camera_calibration import PinholeCalibration
-from peopleboy.tracker.frame import DEPTH, THERMAL, Floats, Frame
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.observation_model import BINS, Body, box_at
 from peopleboy.tracker.rgbd.pre_detection import PreDetection
 from peopleboy.tracker.track import Box
+from peopleboy.tracker.tracking.appearance import FEATURES, Colours, describe_samples
 
 # Share of an object's surface that is as warm as people: depth gives the pixels in the thermal image.
 
@@ -150,3 +151,37 @@ def surface_m(view: DepthView, place_m: Floats) -> float:
 
 def _body(wide_m: float, high_m: float, low_m: float) -> Body:
     return Body(width_m=wide_m, head_m=high_m, low_m=low_m, appearance=_NO_COLOURS)
+
+
+_SAMPLED_ROWS: Final = 32
+_SAMPLED_COLUMNS: Final = 11
+_SAMPLED_M: Final = 0.4  # width in which colours are sampled
+_OWN_M: Final = 0.3  # from a person's surface, within which readings are the person's
+
+
+def describe_readings(frame: Frame, place_m: Floats, tall_m: float) -> Colours:
+    """Return the colours (FEATURES,) of a person at a position (2,), from the person's own readings.
+
+    Readings in front of or behind the person, and next to edges, are left out, so that occluders and
+    background do not count.
+    """
+    view = view_of(frame)
+    if view is None:
+        return np.zeros(FEATURES, np.float32)
+    left, top, width, height = shoulders(view, place_m, _SAMPLED_M, 0.0, tall_m)
+    depth, image = frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
+    if width <= 0.0:
+        return np.zeros(FEATURES, np.float32)
+    across = (np.arange(_SAMPLED_COLUMNS) + 0.5) / _SAMPLED_COLUMNS
+    down = (np.arange(_SAMPLED_ROWS) + 0.5) / _SAMPLED_ROWS
+    u = np.rint(left + width * across).astype(np.int64)
+    v = np.rint(top + height * down).astype(np.int64)
+    is_inside = (v >= 0) & (v < depth.shape[0])
+    v, down = v[is_inside], down[is_inside]
+    u = u[(u >= 0) & (u < depth.shape[1])]
+    own = np.abs(depth[np.ix_(v, u)] / 1000.0 - surface_m(view, place_m)) < _OWN_M
+    inner = own.copy()
+    inner[:, 1:] &= own[:, :-1]
+    inner[:, :-1] &= own[:, 1:]
+    rows, columns = np.nonzero(inner)
+    return describe_samples(image[v[rows], u[columns]], down[rows])

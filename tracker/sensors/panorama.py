@@ -307,7 +307,7 @@ class PanoramaSensor:
             pattern=pattern,
             colours=colours,
             assigned=assigned,
-            has_width=False,
+            has_width=np.zeros(len(at), np.bool_),
             is_masked=True,
             common_m=self._config.common * np.column_stack([across, along]),
             settings=self._settings,

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.geometry.camera_calibration import Calibration
-from peopleboy.tracker.boxes import intersection
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame
 from peopleboy.tracker.sensors.box_detector import BoxDetector, DetectedBoxes
@@ -22,6 +21,7 @@ from peopleboy.tracker.tracking.sensor import (
     Settings,
     Visibility,
     no_appearance,
+    project_boxes,
 )
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
@@ -105,11 +105,8 @@ class ThermalSensor:
             self._viewpoint(frame, predicted)
         if self._view is None:
             return None
-        _, (rows, columns), view = self._view
-        boxes = predicted_boxes(predicted.states, view, predicted.ratio)
-        is_ahead = predicted.states.mean[:, 2] > view.at_m[2]
-        is_inside = intersection(boxes, np.array([-0.5, -0.5, columns, rows])) > 0.0
-        return ProjectedBoxes(boxes, is_inside & is_ahead)
+        _, shape, view = self._view
+        return project_boxes(predicted, view, shape)
 
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
         """Let the detector remember the tracks of its detections."""

@@ -278,7 +278,8 @@ class PeopleTracker:
             target.update_seen(evidence, time_s, dt_s, existence)
             if detections.common_m is not None:
                 target.common_m = detections.common_m[column]
-            target.update_box(detections.camera, detections.boxes[column], has_width=detections.has_width)
+            has_width = detections.has_width is None or bool(detections.has_width[column])
+            target.update_box(detections.camera, detections.boxes[column], has_width=has_width)
             if not is_beside[row]:
                 target.mark_separate(time_s, dt_s)
             elif not detections.is_masked:

@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.geometry.camera_calibration import Calibration
+from peopleboy.tracker.boxes import intersection
 from peopleboy.tracker.frame import Floats, Frame
 from peopleboy.tracker.tracking.appearance import FEATURES, SAMPLES, Colours, Pattern
 from peopleboy.tracker.tracking.config import AssociationConfig, ExistenceConfig, ReidentificationConfig
 from peopleboy.tracker.tracking.measurement import Measurement
-from peopleboy.tracker.tracking.motion_filter import StateEstimates
-from peopleboy.tracker.tracking.viewpoint import Position
+from peopleboy.tracker.tracking.motion_filter import StateEstimates, predicted_boxes
+from peopleboy.tracker.tracking.viewpoint import Position, Viewpoint
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -81,7 +82,7 @@ class SensorDetections:
         colours: (M, 512) of clothes; 0 where unknown.
         assigned: index of a detection by the row of its track, for detections that were searched for there.
         is_search: whether the whole image was searched, so that a detection without a track is a new person.
-        has_width: whether the widths of the boxes are measured, rather than assumed.
+        has_width: (M,) whether the width of each box is measured, rather than assumed; None if all are.
         common_m: (M, 2) standard deviations of positions across and along the line of sight that further
             images of a person do not reduce, as they come from gait and build; None if there are none.
         is_masked: whether colours are of a person's own pixels, so that they do not mix where people overlap.
@@ -97,7 +98,7 @@ class SensorDetections:
     colours: Colours
     assigned: Mapping[int, int] = field(default_factory=dict)
     is_search: bool = True
-    has_width: bool = True
+    has_width: NDArray[np.bool_] | None = None
     is_masked: bool = False
     common_m: Floats | None = None
     settings: Settings
@@ -138,6 +139,15 @@ class ProjectedBoxes(NamedTuple):
 
     boxes: Floats
     is_inside: NDArray[np.bool_]
+
+
+def project_boxes(predicted: Predictions, view: Viewpoint, shape: tuple[int, int]) -> ProjectedBoxes:
+    """Return the tracks in the image of a planar camera with these rows and columns [px]."""
+    boxes = predicted_boxes(predicted.states, view, predicted.ratio)
+    is_ahead = predicted.states.mean[:, 2] > view.at_m[2]
+    rows, columns = shape
+    is_inside = intersection(boxes, np.array([-0.5, -0.5, columns, rows])) > 0.0
+    return ProjectedBoxes(boxes, is_inside & is_ahead)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

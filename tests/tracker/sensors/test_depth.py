@@ -7,7 +7,8 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
-from peopleboy.tracker.sensors.depth import DepthSensor, describe_readings
+from peopleboy.tracker.sensors.depth import DepthSensor
+from peopleboy.tracker.sensors.depth_visibility import describe_readings
 from peopleboy.tracker.tracking.appearance import colour_similarity
 from peopleboy.tracker.tracking.config import STATURE_M
 from peopleboy.tracker.tracking.motion_filter import STATE, StateEstimates
