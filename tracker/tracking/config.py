@@ -324,9 +324,10 @@ _ALL_ROUND: Final = ExistenceConfig(
 _UNKNOWN_IS_OTHER: Final = ReidentificationConfig(colour_unknown=-2.0, least=1.0)
 
 ATTENTIVE: Final = PeopleTrackerConfig(
-    existence=ExistenceConfig(forget_s=600.0), reidentification=ReidentificationConfig(is_final=True)
+    existence=ExistenceConfig(forget_s=600.0),
+    reidentification=ReidentificationConfig(colour_unknown=-2.0, is_final=True),
 )
-"""Settings for people who come back after minutes, checked on seeds 101 to 107 of `absence_10s`."""
+"""Settings for people who come back after minutes, chosen on seeds 102 to 107 of `absence_60s`."""
 
 FUSED: Final = PeopleTrackerConfig(
     motion=KalmanConfig(nearest_m=-math.inf),
