@@ -12,6 +12,7 @@ from PIL.Image import Image
 from docs.generate.pictures import (
     all_round,
     attention,
+    core,
     depth,
     occlusion,
     panorama,
@@ -55,6 +56,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "all_round": all_round.all_round,
     "handed_over": all_round.handed_over,
     "detections": detections.detections,
+    "one_frame": core.one_frame,
     "detector": tracker.detector,
     "contour": tracker.contour,
     "explained_away": occlusion.explained_away,

@@ -115,7 +115,8 @@ def _moment() -> Moment:
     return Moment(explanation, scene, tracks, film.place_m[k])
 
 
-def _colour(track: Track) -> str:
+def colour_of(track: Track) -> str:
+    """Return the colour in which a track is drawn."""
     return COLOURS[track.id % len(COLOURS)]
 
 
@@ -124,7 +125,7 @@ def _boxed(axes: Axes, track: Track, width: int) -> None:
     left, top, wide, high = track.boxes[PANORAMA]
     for shift in (0.0, -width):
         corner = (left + shift - 0.5, top - 0.5)
-        axes.add_patch(Rectangle(corner, wide, high, fill=False, edgecolor=_colour(track), linewidth=1.6))
+        axes.add_patch(Rectangle(corner, wide, high, fill=False, edgecolor=colour_of(track), linewidth=1.6))
 
 
 def _floor(axes: Axes, moment: Moment) -> None:
@@ -133,20 +134,21 @@ def _floor(axes: Axes, moment: Moment) -> None:
     axes.plot(0.0, 0.0, marker="^", color="0.4", markersize=9)
     axes.plot(-moment.true_m[:, 1], moment.true_m[:, 0], "k+", markersize=5, label="ground truth", zorder=3)
     for track in moment.tracks:
-        axes.add_patch(_ellipse(track))
+        axes.add_patch(place_ellipse(track))
     axes.set(xlim=(-REACH_M, REACH_M), ylim=(-REACH_M, REACH_M), aspect="equal")
     axes.set_xlabel("right [m]", fontsize=9)
     axes.set_ylabel("forward [m]", fontsize=9)
     axes.legend(loc="lower left", fontsize=9)
 
 
-def _ellipse(track: Track) -> Ellipse:
+def place_ellipse(track: Track) -> Ellipse:
+    """Return the ellipse that holds the position of a track with 95 % probability, seen from above."""
     assert track.place is not None
     (x, y), (xx, xy, yy) = track.place.position_m, track.place.covariance_m2
     variances, axes = np.linalg.eigh(np.array([[yy, -xy], [-xy, xx]]))  # x right, y ahead
     along, across = 2.0 * SURE * np.sqrt(variances[::-1])
     angle = math.degrees(math.atan2(axes[1, 1], axes[0, 1]))
-    colour = _colour(track)
+    colour = colour_of(track)
     return Ellipse((-y, x), along, across, angle=angle, fill=False, edgecolor=colour, linewidth=2.0)
 
 
@@ -161,7 +163,7 @@ def _patches(figure: Figure, moment: Moment) -> None:
     panels = figure.subplots(1, LAYERS, sharey=True)
     for axes, layer, title in zip(panels, layers, ("foreground", "differs", "not covered"), strict=True):
         axes.imshow(layer, cmap="gray", vmin=0.0, vmax=1.0, extent=span, interpolation="nearest")
-        axes.axhline(0.0, color=_colour(nearest), linewidth=1.0)
+        axes.axhline(0.0, color=colour_of(nearest), linewidth=1.0)
         axes.set_title(title, fontsize=11)
         axes.set_xticks((-0.4, 0.0, 0.4))
         axes.tick_params(labelsize=8)
