@@ -118,4 +118,4 @@ def test_naming_the_trackers_loads_none_of_them() -> None:
     code = "import sys; from peopleboy.tracker.trackers import TRACKERS; list(TRACKERS); "
     code += "print([name for name in sys.modules if name.startswith('peopleboy.tracker.')])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "['peopleboy.tracker.trackers']"
+    assert done.stdout.strip() == "['peopleboy.tracker.tracker_names', 'peopleboy.tracker.trackers']"

@@ -20,7 +20,7 @@ def test_a_run_that_is_killed_is_whole_after_it_is_run_again(tmp_path: Path) -> 
 @pytest.mark.slow
 def test_half_a_minute_and_forty_environments_need_no_more_memory() -> None:
     log = UsageLog(150)
-    soak_run(1.0 / 120.0, log)
+    soak_run(1.0 / 120.0, "detection", log)
     assert log.growth_mb < MOST_GROWTH_MB
     environments = UsageLog(4)
     soak_environments(40, environments)

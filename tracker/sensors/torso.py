@@ -11,7 +11,7 @@ _TORSO_ROWS: Final = np.linspace(0.18, 0.5, 12)  # rows of the torso, in heights
 _BESIDE: Final = 0.1  # in heights, searched to either side of an object
 _TORSO_M: Final = 0.35  # from an object's depth, within which readings belong to it
 _SIDE_PX: Final = 3  # columns beside a torso in which something nearer hides its side
-_LEAST: Final = 0.12  # least width of a torso, in heights
+_LEAST_ROWS: Final = 0.12  # least width of a torso, in heights
 _MOST: Final = 0.5  # share of a column's readings that decides what it shows
 
 
@@ -40,6 +40,6 @@ def find_torso(found: PreDetection, height_px: float, depth: Depth) -> Torso | N
         return None
     is_nearer = ((z_m > 0.0) & (z_m <= found.z_m - _TORSO_M)).mean(axis=0) > _MOST
     sides = is_nearer[max(own[0] - _SIDE_PX, 0) : own[-1] + 1 + _SIDE_PX]
-    if sides.any() or len(own) < _LEAST * height_px:
+    if sides.any() or len(own) < _LEAST_ROWS * height_px:
         return None
     return Torso(first + float(own.mean()), float(len(own)))
