@@ -19,10 +19,10 @@ from peopleboy.tracker.rgbd.window_model import WindowModel, shipped_windows
 from peopleboy.tracker.sensors.depth_visibility import (
     depth_visibility,
     describe_readings,
+    find_torso,
     warmth,
 )
 from peopleboy.tracker.sensors.guided_search import search_near
-from peopleboy.tracker.sensors.torso import find_torso
 from peopleboy.tracker.tracking.config import (
     STATURE_M,
     KalmanConfig,

@@ -3,7 +3,7 @@
 import pytest
 
 from peopleboy.tracker.rgbd.pre_detection import PreDetection
-from peopleboy.tracker.sensors.torso import Torso, find_torso
+from peopleboy.tracker.sensors.depth_visibility import Torso, find_torso
 from tests.helpers.depth_scene import FOCAL_PX, HEIGHT, WIDTH, Block, depth_of
 
 PERSON = Block(0.3, 4.0, width_m=0.4)
