@@ -57,8 +57,6 @@ class Percept:
         knows_again: whether returning people get their previous id after any absence, so that a new id is
             always another person.
         fault: why people cannot be detected now, such as a tracker's error; empty if all is well.
-        is_carried: whether the robot was moved without its wheels since the last percept that the behaviour
-            got, so that nothing is where it was.
 
     Raises:
         BadInput: numbers of angles and ranges differ.
@@ -74,7 +72,6 @@ class Percept:
     image_age_s: float = 0.0
     knows_again: bool = False
     fault: str = ""
-    is_carried: bool = False
 
     def __post_init__(self) -> None:
         """Store read-only copies of the arrays."""

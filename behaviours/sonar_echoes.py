@@ -13,7 +13,6 @@ from peopleboy.behaviours.percept import Percept, Points, Ranges
 RING_CENTRE_X_M = -0.044
 RING_HALF_AXES_M = (0.21, 0.14)
 BESIDE_RAD = math.radians(7.5)  # half a beam's opening
-JUMP_M = 0.3  # a median change of the ranges within a frame that driving does not explain; it stays below 0.1
 
 
 def echoes(percept: Percept, spread_rad: float = 0.0) -> Points:
@@ -44,17 +43,6 @@ def fill_drop_outs(ranges: list[Points]) -> Points:
     """
     nearest: Points = np.min([r for r in ranges if r.shape == ranges[-1].shape], axis=0)
     return nearest
-
-
-def have_jumped(before_m: Ranges, ranges_m: Ranges) -> bool:
-    """Return whether most ranges (N,) [m] changed within a frame by more than driving explains.
-
-    The robot was then lifted and put down elsewhere. Rings that report one range for all sonars, as they do
-    without echoes, do not count.
-    """
-    if before_m.shape != ranges_m.shape or np.ptp(before_m) == 0.0 or np.ptp(ranges_m) == 0.0:
-        return False
-    return bool(np.median(np.abs(ranges_m - before_m)) > JUMP_M)
 
 
 # Near echoes are stored for a while, since a door post can vanish in the gaps between the sonars' cones.

@@ -64,8 +64,6 @@ class FollowConfig:
         stalled_s: [s] without rotation after which a search changes its direction.
         wait_turn_rad_s: [rad/s] highest turn rate while waiting for a lost person.
         max_age_s: [s] greatest age of a track that is followed.
-        settle_s: [s] time after the robot was carried in which tracks from before are not followed: a tracker
-            reports them at their old places for a while.
         wait_s: [s] from the last observation of a person who left the image until the search begins.
         patience_s: [s] waiting time for a person who is occluded by another one.
         gone_s: [s] the same for a person lost in the middle of the image without an occluder, behind a wall
@@ -103,7 +101,6 @@ class FollowConfig:
     stalled_s: float = 0.7
     wait_turn_rad_s: float = 0.5
     max_age_s: float = 0.3
-    settle_s: float = 1.0
     wait_s: float = 1.2
     patience_s: float = 5.0
     gone_s: float = 0.7
@@ -132,8 +129,6 @@ class FollowState:
         time_s: [s] time of the last valid percept.
         target: the followed person; None before the first one and after giving up.
         others: tracks that were visible together with the followed person, and so are other people.
-        carried_s: [s] time at which the robot was carried.
-        old: tracks from before that time.
         walking_m_s: [m/s] estimated speed at which the person walks away.
         side: +1 (left) or -1, direction of the search: the person's last direction of motion.
         has_left: whether the person was leaving the image sideways when last seen.
@@ -149,8 +144,6 @@ class FollowState:
     time_s: float = -math.inf
     target: Target | None = None
     others: frozenset[int] = frozenset()
-    carried_s: float = -math.inf
-    old: frozenset[int] = frozenset()
     walking_m_s: float = 0.0
     side: int = 1
     has_left: bool = False
@@ -202,10 +195,6 @@ def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[
     step_s = percept.time_s - state.time_s
     if not (percept.is_sound and step_s > 0.0):
         return replace(state, mode="blind", reason="invalid or old input"), STOP
-    if percept.is_carried:
-        state = _forget_places(state, percept)
-    if percept.time_s - state.carried_s < config.settle_s:
-        percept = replace(percept, people=tuple(one for one in percept.people if one.id not in state.old))
     heard = remember(state.heard, percept, config.heard)
     state = replace(_update_target(state, percept, step_s, config), time_s=percept.time_s, heard=heard)
     if state.target is None:
@@ -226,22 +215,6 @@ def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[
 def distance_error(height: float, config: FollowConfig) -> float:
     """Return the relative distance error; below 0 is too near."""
     return config.keep_height / height - 1.0
-
-
-def _forget_places(state: FollowState, percept: Percept) -> FollowState:
-    """Forget where anything was before the robot was carried; the person may be in any direction now."""
-    return replace(
-        state,
-        mode="search",
-        reason="the robot was carried",
-        # Only re-identification finds the same person again.
-        target=state.target if percept.knows_again else None,
-        carried_s=percept.time_s,
-        old=frozenset(person.id for person in percept.people),
-        has_left=True,
-        place=None,
-        heard=EchoMemory(),
-    )
 
 
 def _update_target(state: FollowState, percept: Percept, step_s: float, config: FollowConfig) -> FollowState:

@@ -7,7 +7,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.behaviours.sonar_echoes import have_jumped
 from peopleboy.sim.cameras.camera_config import CameraConfig, ThermalConfig
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.world_config import CONTROL_HZ
@@ -22,6 +21,7 @@ _MIDDLE: Final = (
 _TALL: Final = 0.2  # [image heights]
 _WIDE: Final = 0.1  # share of the square of its height that a pattern fills; 0.17 for a person who stands
 _NOISY_PX: Final = 50  # so many noisy pixels, counted over consecutive images, do not repeat by chance
+_CARRIED_M: Final = 0.3  # a median change of the sonar ranges within a frame that driving does not explain
 _LATE_S: Final = 0.1  # a frame more than the shutter's time
 
 # Cameras with images that may be uniform: a view colder than the span, or beyond a camera's reach.
@@ -76,9 +76,9 @@ class CameraHealth:
                 self._last[name] = image, time_s
         self.only_repeats = bool(repeated) and repeated | flat.keys() >= images.keys() & set(self._watched)
         # Whatever made several cameras fail has ended if one of them works again.
-        is_carried = have_jumped(self._sonar_m, observation.sonar_m)
-        self._sonar_m = observation.sonar_m
-        may_be_cold = is_carried or bool(self._failed & images.keys() - flat.keys() - faults.keys())
+        may_be_cold = self._is_carried(observation.sonar_m) or bool(
+            self._failed & images.keys() - flat.keys() - faults.keys()
+        )
         dead = {
             name
             for name, image in flat.items()
@@ -92,6 +92,10 @@ class CameraHealth:
                 self._last[name] = image, time_s
         self._failed = set(faults)
         return faults
+
+    def _is_carried(self, sonar_m: Image) -> bool:
+        before, self._sonar_m = self._sonar_m, sonar_m
+        return before.shape == sonar_m.shape and bool(np.median(np.abs(sonar_m - before)) > _CARRIED_M)
 
     def _is_repeated(self, name: str, image: Image) -> bool:
         """Return whether a camera repeats its image; a few noisy pixels must do so several times.

@@ -65,7 +65,7 @@ def _hidden_person() -> tuple[Tick, SensorDetections]:
             hidden = hidden + 1 if is_hidden else 0
             if seen is not None and hidden == HIDDEN_FRAMES:
                 return tick, seen
-    raise AssertionError("nobody is hidden")
+    raise AssertionError("no person is hidden")
 
 
 def _draw_boxes(axes: Axes, boxes: Iterable[Any], colour: Any, words: list[str], **style: Any) -> None:

@@ -17,7 +17,7 @@ TIMES = iter(range(10000))
 def observed(sonar_m=1.0, **images):
     return Observation(
         time_s=next(TIMES) / 15.0,
-        sonar_m=np.linspace(sonar_m, sonar_m + 0.1, 16),
+        sonar_m=np.full(16, sonar_m),
         odometry=Pose2(),
         wheel_speeds_m_s=(0.0, 0.0),
         images=images,

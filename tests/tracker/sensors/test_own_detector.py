@@ -80,10 +80,10 @@ def test_every_image_is_passed_once_and_read_only() -> None:
 
 def test_probabilities_and_log_odds_that_say_the_same_give_the_same() -> None:
     probability = np.array([0.7, 0.3])
-    told = detections(Fixed([(TWO, probability)]))
-    same = detections(Fixed([(TWO, np.log(probability / (1.0 - probability)))], log_odds=True))
-    np.testing.assert_allclose(told[1], same[1])
-    np.testing.assert_array_equal(told[0], TWO)
+    by_probability = detections(Fixed([(TWO, probability)]))
+    by_log_odds = detections(Fixed([(TWO, np.log(probability / (1.0 - probability)))], log_odds=True))
+    np.testing.assert_allclose(by_probability[1], by_log_odds[1])
+    np.testing.assert_array_equal(by_probability[0], TWO)
 
 
 def test_certain_scores_are_limited_and_improbable_detections_dropped() -> None:
