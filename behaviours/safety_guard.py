@@ -14,7 +14,6 @@ from peopleboy.behaviours.sonar_echoes import (
     EchoMemory,
     EchoMemoryConfig,
     fill_drop_outs,
-    have_jumped,
     remember,
 )
 
@@ -110,7 +109,7 @@ class Guarded:
 
     The robot stops at once when images are missing, people cannot be detected in them, or the sonars have
     failed; the behaviour is not called then, and resumes afterwards: after missing images when several came
-    in a row. If the robot was carried, remembered obstacles are forgotten, and the percept says so.
+    in a row.
 
     Without echoes the robot drives only as fast and as far as it can stop within the floor that the last
     echoes proved free. Until the first echo, it creeps.
@@ -127,8 +126,6 @@ class Guarded:
         self._passing = EchoMemory()
         self._deafness = SonarFailure()
         self._fault = ""
-        self._raw_m: Points = np.zeros(0)
-        self._is_carried = False
         self._images_due = 0
         self.is_limited = False
 
@@ -149,7 +146,6 @@ class Guarded:
 
     def command(self, percept: Percept) -> Command:
         """Return the behaviour's command, limited to a safe one."""
-        self._check_carried(percept)
         self._fault = self._blindness(percept)
         if self._fault:
             self.is_limited = True
@@ -163,8 +159,7 @@ class Guarded:
         if self._fault:
             self.is_limited = True
             return EMERGENCY_STOP
-        wanted = self._behaviour.command(replace(steady, is_carried=self._is_carried))
-        self._is_carried = False
+        wanted = self._behaviour.command(steady)
         self._memory = remember(self._memory, steady, EchoMemoryConfig())
         self._passing = remember(self._passing, steady, PASSING, BESIDE_RAD)
         safe = limit(wanted, steady, self._limits(room_m), self._memory.points, self._passing.points)
@@ -183,14 +178,6 @@ class Guarded:
         if not self._deafness.has_heard:
             highest = min(highest, config.unproven_m_s)
         return replace(config, max_linear_m_s=highest)
-
-    def _check_carried(self, percept: Percept) -> None:
-        """Forget obstacles around a robot that was put down elsewhere."""
-        if have_jumped(self._raw_m, percept.sonar_m):
-            self._is_carried = True
-            self._memory, self._passing = EchoMemory(), EchoMemory()
-            self._recent.clear()
-        self._raw_m = percept.sonar_m
 
     def _blindness(self, percept: Percept) -> str:
         """Return why the images are unusable, or were so lately; empty if they are usable."""

@@ -44,7 +44,7 @@ class SafetyConfig:
         tight_turn_rad_s: [rad/s] turn rate with an obstacle at the corner's distance.
         latest_image_s: [s] time without a new image after which the robot stops: at 15 Hz the first missing
             image.
-        resume_images: number of new images in a row after which a robot that stopped for want of them drives
+        resume_images: number of new images in a row after which a robot that stopped drives
             again, so that it does not start and stop while a camera loses every few images.
     """
 

@@ -10,7 +10,6 @@ from peopleboy.behaviours.behaviour import EMERGENCY_STOP, STOP
 from peopleboy.behaviours.following.follow_identity import recognise
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson, FollowState, follow
 from peopleboy.behaviours.make_behaviour import make_behaviour
-from peopleboy.behaviours.safety_guard import Guarded
 from peopleboy.behaviours.safety_limits import SafetyConfig
 from peopleboy.scenarios.scores.following_metrics import score_following
 from tests.helpers.drives import made_drive
@@ -192,45 +191,6 @@ def test_the_guard_does_not_go_on_while_a_camera_loses_every_third_image():
         guarded.command(percept(frame * STEP_S, person(height=0.3), image_age_s=age_s))
         modes.append(guarded.mode)
     assert modes == ["follow", *(["stop"] * 30), "follow", "follow", "follow"]
-
-
-@pytest.mark.parametrize("knows_again", [False, True])
-def test_a_robot_that_was_carried_searches_at_once_or_waits_for_the_same_person(knows_again):
-    def at(frame, *people, is_carried=False):
-        return percept(frame * STEP_S, *people, is_carried=is_carried, knows_again=knows_again)
-
-    state, _ = follow(FollowState(), at(0, person()), CONFIG)
-    state, _ = follow(state, at(1, person(is_visible=False), is_carried=True), CONFIG)
-    assert state.place is None
-    assert state.mode == ("follow" if knows_again else "search")
-    frames = range(2, round(2.0 * CONFIG.wait_s / STEP_S))
-    for frame in frames:
-        state, command = follow(state, at(frame, person(is_visible=False)), CONFIG)
-    assert state.mode == "search"
-    assert command.linear_m_s == 0.0
-    state, _ = follow(state, at(frames.stop, person(id=2)), CONFIG)
-    assert (state.mode, state.target.id) == (("search", 1) if knows_again else ("follow", 2))
-
-
-def test_the_guard_notices_that_the_robot_was_carried_also_while_it_is_stopped():
-    class Standing:
-        mode, reason, following = "stand", "", None
-
-        def command(self, percept):
-            self.percept = percept
-            return STOP
-
-    behaviour, here, there = Standing(), np.linspace(1.0, 3.0, 16), np.linspace(3.0, 1.0, 16)
-    guarded = Guarded(behaviour)
-    carried = []
-    frames = [(here, 0.0), (here + 0.2, 0.0), (there, STEP_S), *([(there, 0.0)] * 4)]
-    for frame, (ranges_m, age_s) in enumerate(frames):
-        behaviour.percept = None
-        guarded.command(percept(frame * STEP_S, sonar_m=ranges_m, image_age_s=age_s))
-        carried.append(behaviour.percept and behaviour.percept.is_carried)
-        if behaviour.percept:
-            assert (behaviour.percept.sonar_m == (there if frame > 1 else here)).all()
-    assert carried == [False, False, None, None, None, True, False]
 
 
 seen_people = st.builds(
