@@ -28,7 +28,7 @@ from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.floor import Places
 from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame
-from peopleboy.tracker.sensors.panorama import PanoramaSensor
+from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaSensor
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import Tracker, make_tracker
 from peopleboy.tracker.tracking.config import PANORAMIC

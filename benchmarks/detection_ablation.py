@@ -23,15 +23,20 @@ from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import open_views
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.tracker.camera_mount import Mount
-from peopleboy.tracker.detector.detections import Detections
-from peopleboy.tracker.detector.detector import SMALLEST_PX, Grey, PeopleDetector, detect_with_trees
-from peopleboy.tracker.detector.people_trees import shipped_people_trees
-from peopleboy.tracker.detector.rescoring import RescoringNetwork, rescore
 from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.sensors.people_finder import Finder, ThermalFinder
-from peopleboy.tracker.sensors.scheduled_detector import ScheduledDetector
-from peopleboy.tracker.sensors.thermal import ThermalSensor
+from peopleboy.tracker.sensors.detections import Detections
+from peopleboy.tracker.sensors.thermal.detector.detector import (
+    SMALLEST_PX,
+    Grey,
+    PeopleDetector,
+    detect_with_trees,
+)
+from peopleboy.tracker.sensors.thermal.detector.people_trees import shipped_people_trees
+from peopleboy.tracker.sensors.thermal.detector.rescoring import RescoringNetwork, rescore
+from peopleboy.tracker.sensors.thermal.people_finder import Finder, ThermalFinder
+from peopleboy.tracker.sensors.thermal.scheduled_detector import ScheduledDetector
+from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 from peopleboy.tracker.tracking.config import ExistenceConfig, PeopleTrackerConfig, ReidentificationConfig

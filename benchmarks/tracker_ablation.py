@@ -13,10 +13,10 @@ import numpy as np
 from benchmarks import call
 from benchmarks.compare import percents
 from benchmarks.sequences import Recording, print_head, print_row, record
-from peopleboy.tracker.contour.contour_config import TrackerConfig
-from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS, THESIS_OCCLUSION
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.reproductions.contour.contour_config import TrackerConfig
+from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR, PAPER, THESIS, THESIS_OCCLUSION
 from peopleboy.tracker.track import Track
 
 ONE = ("single_stationary", "single_follow")

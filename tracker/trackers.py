@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     import numpy as np
 
     from peopleboy.geometry.camera_calibration import Calibration
-    from peopleboy.tracker.contour.contour_tracker import ContourTracker
     from peopleboy.tracker.frame import Frame
+    from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
     from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
     from peopleboy.tracker.sensors.own_detector import ImageDetector
-    from peopleboy.tracker.sensors.thermal import ThermalSensor
+    from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
     from peopleboy.tracker.track import Box, Track
     from peopleboy.tracker.tracking.config import PeopleTrackerConfig
 
@@ -93,8 +93,8 @@ def knows_again(tracker: Tracker) -> bool:
 
 
 def _contour_tracker(name: str, rng: "np.random.Generator") -> "ContourTracker":
-    from peopleboy.tracker.contour.contour_tracker import ContourTracker
-    from peopleboy.tracker.contour.variants import VARIANTS
+    from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
+    from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 
     return ContourTracker(VARIANTS[name], rng)
 
@@ -110,7 +110,7 @@ def _thermal_sensor(
     detector: "ImageDetector | None", config: "PeopleTrackerConfig | None" = None
 ) -> "ThermalSensor":
     from peopleboy.tracker.sensors.own_detector import OwnDetector
-    from peopleboy.tracker.sensors.thermal import ThermalSensor
+    from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
 
     return ThermalSensor(config, None if detector is None else OwnDetector(detector, config))
 
@@ -195,8 +195,8 @@ def _paper(rng: "np.random.Generator") -> Tracker:
     "distance`), and a Kalman filter on the floor.",
 )
 def _panoramic_paper(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
-    from peopleboy.tracker.panoramic.paper.distance_network import shipped_models
-    from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
+    from peopleboy.tracker.reproductions.panoramic.distance_network import shipped_models
+    from peopleboy.tracker.reproductions.panoramic.paper_tracker import PanoramicPaperTracker
 
     return PanoramicPaperTracker(tuple(shipped_models().values()))
 
@@ -209,7 +209,7 @@ def _panoramic_paper(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     "filter for each person.",
 )
 def _panoramic(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
-    from peopleboy.tracker.sensors.panorama import PanoramaSensor
+    from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaSensor
     from peopleboy.tracker.tracking.config import PANORAMIC
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
@@ -223,7 +223,7 @@ def _panoramic(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     "A person keeps the same id from the thermal image to the panorama and back.",
 )
 def _handover(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
-    from peopleboy.tracker.sensors.panorama import PanoramaSensor
+    from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaSensor
     from peopleboy.tracker.tracking.config import FUSED
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
@@ -263,7 +263,7 @@ def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
 )
 def _fused(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.sensors.depth import DepthSensor
-    from peopleboy.tracker.sensors.panorama import PanoramaSensor
+    from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaSensor
     from peopleboy.tracker.tracking.config import FUSED
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
@@ -295,10 +295,10 @@ def _attentive(
     "chapter.",
 )
 def _attentive_printed(rng: "np.random.Generator") -> Tracker:
-    from peopleboy.tracker.attention.attention_config import PRINTED
-    from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
-    from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
-    from peopleboy.tracker.attention.people.recogniser import ByFocus
+    from peopleboy.tracker.reproductions.attention.attention_config import PRINTED
+    from peopleboy.tracker.reproductions.attention.people.attentive_config import AS_FOUND
+    from peopleboy.tracker.reproductions.attention.people.attentive_tracker import AttentiveTracker
+    from peopleboy.tracker.reproductions.attention.people.recogniser import ByFocus
 
     return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByFocus(PRINTED), AS_FOUND)
 

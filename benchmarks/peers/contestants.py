@@ -13,9 +13,9 @@ from benchmarks.peers.joint_filter import JointFilter
 from benchmarks.peers.ours import Contestant, Ours
 from peopleboy.random_streams import stream
 from peopleboy.tracker.boxes import within_image
-from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 RATE_HZ = 15.0

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.truth.scenes import SEEN
-from peopleboy.tracker.contour.colour_config import ROBOT_AFFINE
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.reproductions.contour.colour_config import ROBOT_AFFINE
 
 Boxes = NDArray[np.float64]
 TRUTH_PER_HEIGHT = 0.27  # ratio of width to height of ground-truth boxes, mean of the library

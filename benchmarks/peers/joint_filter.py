@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.peers.detectors import Boxes
-from peopleboy.tracker.contour.box_interaction import box_of, detector_factor, regions_of
-from peopleboy.tracker.contour.measurement.likelihood import ContourModel, fitness, probability
-from peopleboy.tracker.contour.particle_filter import (
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.reproductions.contour.box_interaction import box_of, detector_factor, regions_of
+from peopleboy.tracker.reproductions.contour.measurement.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.reproductions.contour.particle_filter import (
     OUTSIDE_WEIGHT,
     Belief,
     FrameView,
@@ -25,10 +26,14 @@ from peopleboy.tracker.contour.particle_filter import (
     view_frame,
     weigh,
 )
-from peopleboy.tracker.contour.particles import Floats, equally_weighted, mean_state, uncertainty_px2
-from peopleboy.tracker.contour.tracked_person import is_born, is_kept
-from peopleboy.tracker.contour.variants import THESIS
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.reproductions.contour.particles import (
+    Floats,
+    equally_weighted,
+    mean_state,
+    uncertainty_px2,
+)
+from peopleboy.tracker.reproductions.contour.tracked_person import is_born, is_kept
+from peopleboy.tracker.reproductions.contour.variants import THESIS
 
 # Steps of the chain per person. It rejects most proposals: with 1000 steps, the literal tracker's number of
 # samples, it finds half as many people.

@@ -13,15 +13,19 @@ from benchmarks.peers.detectors import Hog
 from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.world import SimulatedWorld
-from peopleboy.tracker.contour.appearance.appearance_model import ColourModel, likelihood
-from peopleboy.tracker.contour.box_interaction import overlap_shares, person_factor, regions_of
-from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.explanation import DETECTOR_KEY
-from peopleboy.tracker.contour.measurement.likelihood import ContourModel, covered_by, seen_shares
-from peopleboy.tracker.contour.particle_filter import FrameView, begin, step, view_frame, weigh
-from peopleboy.tracker.contour.particles import mean_state, predict, resample
-from peopleboy.tracker.contour.variants import CONTOUR
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
+from peopleboy.tracker.reproductions.contour.appearance.appearance_model import ColourModel, likelihood
+from peopleboy.tracker.reproductions.contour.box_interaction import overlap_shares, person_factor, regions_of
+from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.reproductions.contour.explanation import DETECTOR_KEY
+from peopleboy.tracker.reproductions.contour.measurement.likelihood import (
+    ContourModel,
+    covered_by,
+    seen_shares,
+)
+from peopleboy.tracker.reproductions.contour.particle_filter import FrameView, begin, step, view_frame, weigh
+from peopleboy.tracker.reproductions.contour.particles import mean_state, predict, resample
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, DEFAULT_TRACKER, make_tracker
 

@@ -20,8 +20,8 @@ from peopleboy.sim.cameras.camera_config import DepthConfig, calibrations_of
 from peopleboy.sim.cameras.depth import structured_light
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.camera_mount import mount_of
-from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Frame, Odometry
+from peopleboy.tracker.sensors.thermal.detector.detector import PeopleDetector
 from peopleboy.tracker.trackers import make_tracker
 
 CROWD = "crossing_4"

@@ -21,11 +21,11 @@ from peopleboy.sim.cameras.kinds import colour_from_thermal, shown_to_people
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.boxes import Box, corners
-from peopleboy.tracker.contour.explanation import ContourExplanation
-from peopleboy.tracker.contour.measurement.section_evidence import outline
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.reproductions.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation
+from peopleboy.tracker.reproductions.contour.measurement.section_evidence import outline
 from peopleboy.tracker.track import Status, Track
 
 Line = NDArray[np.float64]  # (K, 2) [px] in the thermal image

@@ -35,10 +35,10 @@ from peopleboy.scenarios.run_folder.run_files import true_boxes, truth_files
 from peopleboy.scenarios.run_folder.run_tables import odometry_pose
 from peopleboy.sim.cameras.camera_config import ThermalConfig, calibrations_of
 from peopleboy.tracker.camera_mount import mount_of
-from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.evaluation.mot_files import detection_line, truth_line
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.sensors.thermal.detector.detector import PeopleDetector
 from peopleboy.tracker.tracking.config import ExistenceConfig
 
 BENCHMARK, EVERYTHING = "peopleboy", "all"

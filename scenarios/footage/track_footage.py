@@ -14,11 +14,11 @@ from peopleboy.scenarios.run_folder.atomic_output import atomic_folder, check_na
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.run_files import check_detections
 from peopleboy.tracker.checked_tracker import CheckedTracker
-from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.footage.box_kinds import BoxKind, boxed_whole, torso_of
 from peopleboy.tracker.footage.footage_truth import GivenTruth, doubts, find_truth, load_truth
 from peopleboy.tracker.frame import DEPTH
+from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from peopleboy.tracker.trackers import Introducible, Tracker, explanation_of, is_own, make_tracker
 from peopleboy.wording import counted
 

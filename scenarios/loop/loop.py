@@ -18,8 +18,8 @@ from peopleboy.sim.observation import Observation, OnDemand
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import image_shares
-from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.reproductions.contour.box_interaction import standing_box
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again, make_tracker
 

@@ -28,17 +28,21 @@ from peopleboy.scenarios.recording.marks import (
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import CameraGeometry, invert_pose, transform
-from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
-from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation
-from peopleboy.tracker.contour.measurement.contour import FEET, SECTIONS
-from peopleboy.tracker.contour.measurement.section_evidence import Evidence, evidence_of, section_lines
 from peopleboy.tracker.frame import DEPTH, PANORAMA
-from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
-from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicExplanation
+from peopleboy.tracker.reproductions.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.reproductions.contour.explanation import DETECTOR_KEY, ContourExplanation
+from peopleboy.tracker.reproductions.contour.measurement.contour import FEET, SECTIONS
+from peopleboy.tracker.reproductions.contour.measurement.section_evidence import (
+    Evidence,
+    evidence_of,
+    section_lines,
+)
+from peopleboy.tracker.reproductions.panoramic.depth_cues import MeasuredFigure
+from peopleboy.tracker.reproductions.panoramic.paper_tracker import PanoramicExplanation
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
 from peopleboy.tracker.sensors.depth import DepthExplanation
-from peopleboy.tracker.sensors.panorama import PanoramaExplanation
-from peopleboy.tracker.sensors.thermal import DetectionExplanation
+from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaExplanation
+from peopleboy.tracker.sensors.thermal.thermal_sensor import DetectionExplanation
 from peopleboy.tracker.track import Box, FloorPlace, Track
 from peopleboy.tracker.tracking.sensor import parts_of
 

@@ -17,8 +17,8 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.boxes import image_shares
-from peopleboy.tracker.contour.particles import Particles
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.reproductions.contour.particles import Particles
 from peopleboy.tracker.track import Box, Status, Track
 
 PARTICLES_A_FILTER = 50

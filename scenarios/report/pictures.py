@@ -40,11 +40,11 @@ from peopleboy.scenarios.run_folder.run_tables import Row, read_explanation
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.cameras.kinds import kind_of, layers_of
 from peopleboy.sim.geometry.pinhole import CameraGeometry
-from peopleboy.tracker.attention.attend import Focus
-from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
-from peopleboy.tracker.attention.people.attentive_explanation import Attended
-from peopleboy.tracker.attention.people.person_views import LOOKED_AT, PersonView, box_in
 from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.reproductions.attention.attend import Focus
+from peopleboy.tracker.reproductions.attention.people.attentive_config import AttentiveConfig
+from peopleboy.tracker.reproductions.attention.people.attentive_explanation import Attended
+from peopleboy.tracker.reproductions.attention.people.person_views import LOOKED_AT, PersonView, box_in
 from peopleboy.tracker.track import Box, Status
 
 SCALE = 2

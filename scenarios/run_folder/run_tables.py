@@ -17,9 +17,9 @@ from pyarrow.fs import LocalFileSystem
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.atomic_output import PART
-from peopleboy.tracker.contour.explanation import ContourExplanation, Ellipse
-from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation, Ellipse
+from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 from peopleboy.tracker.tracking.sensor import parts_of
 

@@ -8,15 +8,21 @@ from typing import Any
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.contour.contour_config import (
+from peopleboy.tracker.reproductions.contour.contour_config import (
     DepthOrderConfig,
     HeightConfig,
     InteractionConfig,
     StayBehindConfig,
     TrackerConfig,
 )
-from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
+from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.reproductions.contour.variants import (
+    CONTOUR,
+    PAPER,
+    THESIS,
+    THESIS_COLOUR,
+    THESIS_OCCLUSION,
+)
 
 Value = float | int | str | bool | tuple[float, ...] | None
 Changes = tuple[tuple[str, Value], ...]

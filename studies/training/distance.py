@@ -21,9 +21,8 @@ from peopleboy.sim.world_config import WorldConfig
 from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, sample_folder
 from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.frame import PANORAMA, Frame
-from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
-from peopleboy.tracker.panoramic.paper.depth_cues import EMPTY_IMAGES, learn_background, measure
-from peopleboy.tracker.panoramic.paper.distance_network import (
+from peopleboy.tracker.reproductions.panoramic.depth_cues import EMPTY_IMAGES, learn_background, measure
+from peopleboy.tracker.reproductions.panoramic.distance_network import (
     CUES,
     HIGH,
     LOW,
@@ -33,8 +32,9 @@ from peopleboy.tracker.panoramic.paper.distance_network import (
     scaled,
     with_bias,
 )
-from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
-from peopleboy.tracker.panoramic.paper.position_filter import STEP_S, estimate_noise
+from peopleboy.tracker.reproductions.panoramic.paper_tracker import PanoramicConfig
+from peopleboy.tracker.reproductions.panoramic.position_filter import STEP_S, estimate_noise
+from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaView, view_of
 
 Floats = NDArray[np.float64]
 

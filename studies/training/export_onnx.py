@@ -11,19 +11,19 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.atomic_output import writing_to
-from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from peopleboy.tracker.networks.inference import CHANNELS, CropNetwork, DenseNetwork
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, MaskNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED
-from peopleboy.tracker.panoramic.paper.distance_network import (
+from peopleboy.tracker.reproductions.panoramic.distance_network import (
     CUES,
     HIGH,
     LOW,
     DistanceModel,
     file_name,
 )
-from peopleboy.tracker.panoramic.people_foreground import FILE, ForegroundModel
-from peopleboy.tracker.panoramic.place_model import PlaceModel
+from peopleboy.tracker.sensors.panorama.people_foreground import FILE, ForegroundModel
+from peopleboy.tracker.sensors.panorama.place_model import PlaceModel
+from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 
 _OPSET: Final = 17
 _BATCH: Final = "N"

@@ -25,8 +25,8 @@ from peopleboy.studies.training.random_scenes import FIRST_SEED
 from peopleboy.studies.training.samples import Split, Tasks
 from peopleboy.studies.training.specification import Specification, report
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
-from peopleboy.tracker.panoramic.panorama_view import view_of
-from peopleboy.tracker.panoramic.people_foreground import FILE, Foreground, ForegroundModel
+from peopleboy.tracker.sensors.panorama.panorama_view import view_of
+from peopleboy.tracker.sensors.panorama.people_foreground import FILE, Foreground, ForegroundModel
 
 Linear = NDArray[np.float32]
 Floats = NDArray[np.float64]

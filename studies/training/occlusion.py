@@ -26,15 +26,32 @@ from peopleboy.studies.training.samples import (
 )
 from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.contour.contour_config import TrackerConfig
-from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.occlusion.depth_order import ExpectedPerson, Leads, Order, lower_foot
-from peopleboy.tracker.contour.occlusion.learned_order import LearnedOrder, features_of
-from peopleboy.tracker.contour.occlusion.learned_table import TABLES, LearnedTable, WeakClassifier
-from peopleboy.tracker.contour.occlusion.pair_features import FEATURES, Features, overlapping_pairs
-from peopleboy.tracker.contour.occlusion.weak_classifiers import SortedSums, best_stump, weighted_sums
-from peopleboy.tracker.contour.particle_filter import FrameView
-from peopleboy.tracker.contour.variants import CONTOUR, THESIS_OCCLUSION
+from peopleboy.tracker.reproductions.contour.contour_config import TrackerConfig
+from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.reproductions.contour.occlusion.depth_order import (
+    ExpectedPerson,
+    Leads,
+    Order,
+    lower_foot,
+)
+from peopleboy.tracker.reproductions.contour.occlusion.learned_order import LearnedOrder, features_of
+from peopleboy.tracker.reproductions.contour.occlusion.learned_table import (
+    TABLES,
+    LearnedTable,
+    WeakClassifier,
+)
+from peopleboy.tracker.reproductions.contour.occlusion.pair_features import (
+    FEATURES,
+    Features,
+    overlapping_pairs,
+)
+from peopleboy.tracker.reproductions.contour.occlusion.weak_classifiers import (
+    SortedSums,
+    best_stump,
+    weighted_sums,
+)
+from peopleboy.tracker.reproductions.contour.particle_filter import FrameView
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR, THESIS_OCCLUSION
 
 SCENARIOS = (
     "crossing_pair",

@@ -30,12 +30,12 @@ from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks,
 from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.networks.inference import DenseNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED
-from peopleboy.tracker.panoramic.figure_patch import PATCH, Map
-from peopleboy.tracker.panoramic.panorama_patches import PanoramaScene, promising_places
-from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
-from peopleboy.tracker.panoramic.people_foreground import FILE as FOREGROUND
-from peopleboy.tracker.panoramic.people_foreground import Foreground
-from peopleboy.tracker.panoramic.place_model import FILE, PlaceModel, with_distance
+from peopleboy.tracker.sensors.panorama.figure_patch import PATCH, Map
+from peopleboy.tracker.sensors.panorama.panorama_patches import PanoramaScene, promising_places
+from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaView, view_of
+from peopleboy.tracker.sensors.panorama.people_foreground import FILE as FOREGROUND
+from peopleboy.tracker.sensors.panorama.people_foreground import Foreground
+from peopleboy.tracker.sensors.panorama.place_model import FILE, PlaceModel, with_distance
 
 Floats = NDArray[np.float64]
 

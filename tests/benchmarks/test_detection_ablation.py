@@ -11,10 +11,10 @@ from numpy.testing import assert_array_equal
 from benchmarks.detection_ablation import LEAST, VARIANTS, DetectorOfStage, DetectorStage, thermal_finder
 from benchmarks.sequences import Recording, record
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.tracker.detector.detections import NO_DETECTIONS
-from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.sensors.thermal import ThermalSensor
+from peopleboy.tracker.sensors.detections import NO_DETECTIONS
+from peopleboy.tracker.sensors.thermal.detector.detector import PeopleDetector
+from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
 from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
 

@@ -1,5 +1,5 @@
 from benchmarks.tracker_ablation import STEPS, adopt, differing, step_of, variants
-from peopleboy.tracker.contour.variants import CONTOUR, THESIS
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR, THESIS
 
 
 def test_all_steps_together_lead_from_the_thesis_tracker_to_the_default_one():

@@ -14,8 +14,8 @@ from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.scenario_file import FaultSpec, json_schema
 from peopleboy.settings import settings_of
 from peopleboy.sim.people.person_config import Reaction, Waypoint
-from peopleboy.tracker.contour import contour_config
 from peopleboy.tracker.evaluation.table import FIGURES
+from peopleboy.tracker.reproductions.contour import contour_config
 from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers.pages import DOCS
 

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol
 
-from peopleboy.tracker.detector.detections import NO_DETECTIONS, Detections
 from peopleboy.tracker.frame import Floats, Frame
+from peopleboy.tracker.sensors.detections import NO_DETECTIONS, Detections
 from peopleboy.tracker.tracking.sensor import Predictions, SensorDetections
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 

@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import load_own
 from peopleboy.tracker.boxes import centres_outside
-from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.evaluation.mot_files import read_detections
 from peopleboy.tracker.evaluation.sequence import FARTHEST
 from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame, lacking
 from peopleboy.tracker.sensors.box_detector import DetectedBoxes
+from peopleboy.tracker.sensors.detections import Detections
 from peopleboy.tracker.tracker_names import is_detection_file
 from peopleboy.tracker.tracking.appearance import boxes_in_other_image
 from peopleboy.tracker.tracking.config import DetectorScoreConfig, PeopleTrackerConfig

@@ -25,10 +25,10 @@ from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.studies.training.panorama_sequences import panorama_calibration, render_panoramas
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
-from peopleboy.tracker.panoramic.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
-from peopleboy.tracker.panoramic.panorama_patches import PanoramaScene
-from peopleboy.tracker.panoramic.people_foreground import Foreground
-from peopleboy.tracker.sensors.panorama import PanoramaExplanation
+from peopleboy.tracker.sensors.panorama.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
+from peopleboy.tracker.sensors.panorama.panorama_patches import PanoramaScene
+from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaExplanation
+from peopleboy.tracker.sensors.panorama.people_foreground import Foreground
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import explanation_of, make_tracker
 

@@ -16,13 +16,13 @@ from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import calibrations_of
-from peopleboy.tracker.attention.attend import Focus
-from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
-from peopleboy.tracker.attention.people.attentive_explanation import Attended
-from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
-from peopleboy.tracker.attention.people.person_views import PersonView, box_in
-from peopleboy.tracker.attention.people.recogniser import ByColour, ColourLook
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.reproductions.attention.attend import Focus
+from peopleboy.tracker.reproductions.attention.people.attentive_config import AttentiveConfig
+from peopleboy.tracker.reproductions.attention.people.attentive_explanation import Attended
+from peopleboy.tracker.reproductions.attention.people.attentive_tracker import AttentiveTracker
+from peopleboy.tracker.reproductions.attention.people.person_views import PersonView, box_in
+from peopleboy.tracker.reproductions.attention.people.recogniser import ByColour, ColourLook
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 

@@ -17,7 +17,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.frame import THERMAL, Frame
-from peopleboy.tracker.sensors.thermal import ThermalSensor
+from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
 from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 from peopleboy.tracker.tracking.sensor import Predictions, SensorDetections
 

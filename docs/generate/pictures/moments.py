@@ -12,7 +12,7 @@ from peopleboy.behaviours.scripted import Stand
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.world import SimulatedWorld
-from peopleboy.tracker.contour.explanation import ContourExplanation
+from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 CROSSING = ("crossing_2", 3)

@@ -12,9 +12,14 @@ from docs.generate.pictures.paper import panels, plot, show, zoom
 from docs.generate.pictures.tracker import place_probes
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.tracker.contour.measurement.likelihood import COVERED, ContourModel, covered_by, pixels_under
-from peopleboy.tracker.contour.measurement.section_evidence import outline
-from peopleboy.tracker.contour.variants import CONTOUR
+from peopleboy.tracker.reproductions.contour.measurement.likelihood import (
+    COVERED,
+    ContourModel,
+    covered_by,
+    pixels_under,
+)
+from peopleboy.tracker.reproductions.contour.measurement.section_evidence import outline
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR
 from peopleboy.tracker.track import Status, Track
 
 NEAR, FAR = 1, 2  # tracks of nina and olaf

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from docs.generate.pictures.moments import CROSSING, explained, state_of, ticks
 from docs.generate.pictures.paper import panels, show, zoom
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.tracker.contour.explanation import DETECTOR_KEY
-from peopleboy.tracker.contour.measurement.contour import Probes
-from peopleboy.tracker.contour.measurement.likelihood import ContourModel
-from peopleboy.tracker.contour.measurement.section_evidence import outline
-from peopleboy.tracker.contour.particles import Particles
-from peopleboy.tracker.contour.variants import CONTOUR
+from peopleboy.tracker.reproductions.contour.explanation import DETECTOR_KEY
+from peopleboy.tracker.reproductions.contour.measurement.contour import Probes
+from peopleboy.tracker.reproductions.contour.measurement.likelihood import ContourModel
+from peopleboy.tracker.reproductions.contour.measurement.section_evidence import outline
+from peopleboy.tracker.reproductions.contour.particles import Particles
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR
 
 SHOWN = (1, 3, 4, 24)
 FRAME = 45

@@ -9,9 +9,9 @@ from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from docs.generate.markdown import table
-from peopleboy.tracker.contour import contour_config as source
-from peopleboy.tracker.contour.contour_config import FilterConfig, LimitsConfig, TrackerConfig
-from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS_OCCLUSION
+from peopleboy.tracker.reproductions.contour import contour_config as source
+from peopleboy.tracker.reproductions.contour.contour_config import FilterConfig, LimitsConfig, TrackerConfig
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR, PAPER, THESIS_OCCLUSION
 
 COLUMNS: Mapping[str, TrackerConfig] = {
     "thesis": THESIS_OCCLUSION,

@@ -22,12 +22,12 @@ from peopleboy.studies.reproductions.experiment import Floats, Line, Samples, as
 from peopleboy.studies.reproductions.experiments.playback import Moment, play
 from peopleboy.studies.reproductions.plan import shortened
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.tracker.attention.attend import Focus, PersonModel, learn, middle_of, search
-from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
-from peopleboy.tracker.attention.image_sums import ImageSums
-from peopleboy.tracker.attention.part_model import check_box
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.reproductions.attention.attend import Focus, PersonModel, learn, middle_of, search
+from peopleboy.tracker.reproductions.attention.attention_config import PRINTED, AttentionConfig
+from peopleboy.tracker.reproductions.attention.image_sums import ImageSums
+from peopleboy.tracker.reproductions.attention.part_model import check_box
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import make_tracker
 

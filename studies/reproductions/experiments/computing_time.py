@@ -15,18 +15,19 @@ from peopleboy.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Line, Samples
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.tracker.attention.attend import learn, search
-from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
-from peopleboy.tracker.attention.feature_maps import feature_maps
-from peopleboy.tracker.attention.image_sums import ImageSums
-from peopleboy.tracker.attention.people.person_views import PersonView
-from peopleboy.tracker.attention.people.recogniser import ColourLook
-from peopleboy.tracker.contour.appearance.appearance_model import ColourModel, likelihood
-from peopleboy.tracker.contour.appearance.colour_view import ColourView, PowerSums
-from peopleboy.tracker.contour.colour_config import ColourDescriptorConfig
-from peopleboy.tracker.contour.contour_config import TrackerConfig
-from peopleboy.tracker.contour.measurement.likelihood import ContourModel, fitness, probability
-from peopleboy.tracker.contour.particle_filter import (
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
+from peopleboy.tracker.reproductions.attention.attend import learn, search
+from peopleboy.tracker.reproductions.attention.attention_config import PRINTED, AttentionConfig
+from peopleboy.tracker.reproductions.attention.feature_maps import feature_maps
+from peopleboy.tracker.reproductions.attention.image_sums import ImageSums
+from peopleboy.tracker.reproductions.attention.people.person_views import PersonView
+from peopleboy.tracker.reproductions.attention.people.recogniser import ColourLook
+from peopleboy.tracker.reproductions.contour.appearance.appearance_model import ColourModel, likelihood
+from peopleboy.tracker.reproductions.contour.appearance.colour_view import ColourView, PowerSums
+from peopleboy.tracker.reproductions.contour.colour_config import ColourDescriptorConfig
+from peopleboy.tracker.reproductions.contour.contour_config import TrackerConfig
+from peopleboy.tracker.reproductions.contour.measurement.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.reproductions.contour.particle_filter import (
     advance,
     begin,
     is_within,
@@ -34,7 +35,7 @@ from peopleboy.tracker.contour.particle_filter import (
     step,
     view_frame,
 )
-from peopleboy.tracker.contour.particles import (
+from peopleboy.tracker.reproductions.contour.particles import (
     Particles,
     limits_px,
     mean_state,
@@ -42,7 +43,6 @@ from peopleboy.tracker.contour.particles import (
     resample,
     uncertainty_px2,
 )
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 
 MS: Final = "ms"
 TURNS: Final = 5

@@ -16,7 +16,12 @@ from peopleboy.studies.training.distance import (
     fit_distances,
     walks,
 )
-from peopleboy.tracker.panoramic.paper.position_filter import PRINTED, STEP_S, PositionFilter, estimate_noise
+from peopleboy.tracker.reproductions.panoramic.position_filter import (
+    PRINTED,
+    STEP_S,
+    PositionFilter,
+    estimate_noise,
+)
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]

@@ -24,9 +24,9 @@ from peopleboy.studies.reproductions.experiments.playback import Stopwatch, play
 from peopleboy.studies.reproductions.plan import PRESETS, SEQUENCES
 from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.tracker.frame import DEPTH, Frame
+from peopleboy.tracker.reproductions.scene_model.printed_config import VARIANTS
+from peopleboy.tracker.reproductions.scene_model.printed_model import PrintedSceneModel
 from peopleboy.tracker.scene_model.geometry import Geometry
-from peopleboy.tracker.scene_model.printed.printed_config import VARIANTS
-from peopleboy.tracker.scene_model.printed.printed_model import PrintedSceneModel
 from peopleboy.tracker.scene_model.scene import Happening, Metres, VistaScene
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneConfig
 from peopleboy.tracker.scene_model.scene_model import SceneModel

@@ -21,8 +21,13 @@ from peopleboy.sim.world_config import WorldConfig
 from peopleboy.studies.reproductions.image_errors import ErrorSummary
 from peopleboy.studies.training.distance import panoramas
 from peopleboy.tracker.frame import PANORAMA
-from peopleboy.tracker.panoramic.paper.depth_cues import EMPTY_IMAGES, Background, learn_background, measure
-from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
+from peopleboy.tracker.reproductions.panoramic.depth_cues import (
+    EMPTY_IMAGES,
+    Background,
+    learn_background,
+    measure,
+)
+from peopleboy.tracker.reproductions.panoramic.paper_tracker import PanoramicConfig
 
 LEAST_ANGLE_RAD: Final = math.radians(
     10.0

@@ -43,15 +43,15 @@ from peopleboy.studies.reproductions.experiments.webcam_positions import (
 )
 from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.studies.training.distance import DistanceSamples, panoramas
-from peopleboy.tracker.panoramic.paper.depth_cues import (
+from peopleboy.tracker.reproductions.panoramic.depth_cues import (
     EMPTY_IMAGES,
     Background,
     MeasuredFigure,
     learn_background,
     measure,
 )
-from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
-from peopleboy.tracker.panoramic.paper.position_filter import PRINTED, PositionFilter
+from peopleboy.tracker.reproductions.panoramic.paper_tracker import PanoramicConfig
+from peopleboy.tracker.reproductions.panoramic.position_filter import PRINTED, PositionFilter
 
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]

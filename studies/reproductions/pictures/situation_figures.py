@@ -49,11 +49,11 @@ from peopleboy.studies.reproductions.experiments.scenes import (
     watch_scene,
 )
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.tracker.attention.attend import PersonModel, attention_map, learn, search
-from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
-from peopleboy.tracker.attention.image_sums import ImageSums
-from peopleboy.tracker.attention.part_model import HEAD, TORSO, ModelPart
 from peopleboy.tracker.frame import COLOUR
+from peopleboy.tracker.reproductions.attention.attend import PersonModel, attention_map, learn, search
+from peopleboy.tracker.reproductions.attention.attention_config import PRINTED, AttentionConfig
+from peopleboy.tracker.reproductions.attention.image_sums import ImageSums
+from peopleboy.tracker.reproductions.attention.part_model import HEAD, TORSO, ModelPart
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]

@@ -25,15 +25,15 @@ from peopleboy.studies.reproductions.canvas import (
     single,
 )
 from peopleboy.studies.reproductions.experiments.playback import Moment, play, unbroken
-from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.explanation import Ellipse
-from peopleboy.tracker.contour.measurement.likelihood import ContourModel
-from peopleboy.tracker.contour.measurement.section_evidence import outline
-from peopleboy.tracker.contour.particles import CROWN, FOOT, H, Y, draw_around, draw_prior
-from peopleboy.tracker.contour.variants import THESIS
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.reproductions.contour.explanation import Ellipse
+from peopleboy.tracker.reproductions.contour.measurement.likelihood import ContourModel
+from peopleboy.tracker.reproductions.contour.measurement.section_evidence import outline
+from peopleboy.tracker.reproductions.contour.particles import CROWN, FOOT, H, Y, draw_around, draw_prior
+from peopleboy.tracker.reproductions.contour.variants import THESIS
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.cameras.imaging.electronics import compress
 from peopleboy.studies.training.detector.world_sequences import HIGHEST, ThermalImage
 from peopleboy.tracker.camera_mount import Mount
-from peopleboy.tracker.detector.window import WindowKind
+from peopleboy.tracker.sensors.thermal.detector.window import WindowKind
 
 Grey = NDArray[np.uint8]
 Draw = np.random.Generator

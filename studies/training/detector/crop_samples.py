@@ -24,8 +24,10 @@ from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights,
 from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks
 from peopleboy.studies.training.specification import Specification, report
 from peopleboy.tracker.boxes import Floats, iou
-from peopleboy.tracker.detector.box_regression import OFFSETS, decode_boxes
-from peopleboy.tracker.detector.crops import (
+from peopleboy.tracker.networks.inference import CHANNELS, Architecture, CropNetwork, CropSize
+from peopleboy.tracker.sensors.detections import Detections
+from peopleboy.tracker.sensors.thermal.detector.box_regression import OFFSETS, decode_boxes
+from peopleboy.tracker.sensors.thermal.detector.crops import (
     FEATURES,
     Crops,
     Planes,
@@ -33,8 +35,6 @@ from peopleboy.tracker.detector.crops import (
     cut_crops,
     normalise_crops,
 )
-from peopleboy.tracker.detector.detections import Detections
-from peopleboy.tracker.networks.inference import CHANNELS, Architecture, CropNetwork, CropSize
 
 Array = jax.Array | Planes
 

@@ -12,10 +12,10 @@ from peopleboy.studies.training.detector.augmentation import calibration_pair
 from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.studies.training.specification import missing_package
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.detector.detections import Detections
-from peopleboy.tracker.detector.detector import SMALLEST_PX, detect_with_trees
-from peopleboy.tracker.detector.people_trees import PeopleModel, PeopleTrees
-from peopleboy.tracker.detector.window import WindowKind
+from peopleboy.tracker.sensors.detections import Detections
+from peopleboy.tracker.sensors.thermal.detector.detector import SMALLEST_PX, detect_with_trees
+from peopleboy.tracker.sensors.thermal.detector.people_trees import PeopleModel, PeopleTrees
+from peopleboy.tracker.sensors.thermal.detector.window import WindowKind
 
 Floats = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ from peopleboy.studies.training.detector.augmentation import augment_for, has_pe
 from peopleboy.studies.training.detector.boosting import in_threads
 from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.detector.box_regression import encode_boxes
-from peopleboy.tracker.detector.cascade import Cascade
-from peopleboy.tracker.detector.channels import CHANNELS, Cells
-from peopleboy.tracker.detector.detector import SMALLEST_PX
-from peopleboy.tracker.detector.patches import Patches, integrate
-from peopleboy.tracker.detector.pyramid import STEP, pyramid_levels
-from peopleboy.tracker.detector.window import CELL_PX, COLUMNS, PERSON_PX, ROWS, WindowKind
+from peopleboy.tracker.sensors.thermal.detector.box_regression import encode_boxes
+from peopleboy.tracker.sensors.thermal.detector.cascade import Cascade
+from peopleboy.tracker.sensors.thermal.detector.channels import CHANNELS, Cells
+from peopleboy.tracker.sensors.thermal.detector.detector import SMALLEST_PX
+from peopleboy.tracker.sensors.thermal.detector.patches import Patches, integrate
+from peopleboy.tracker.sensors.thermal.detector.pyramid import STEP, pyramid_levels
+from peopleboy.tracker.sensors.thermal.detector.window import CELL_PX, COLUMNS, PERSON_PX, ROWS, WindowKind
 
 Floats = NDArray[np.float64]
 Windows = NDArray[np.float16]

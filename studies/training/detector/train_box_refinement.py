@@ -21,10 +21,10 @@ from peopleboy.studies.training.detector.crop_samples import (
 from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.studies.training.optimiser import huber
 from peopleboy.tracker.boxes import area, cover, intersection, iou
-from peopleboy.tracker.detector.box_regression import encode_boxes
-from peopleboy.tracker.detector.detections import Detections
-from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork
-from peopleboy.tracker.detector.window import Floats
+from peopleboy.tracker.sensors.detections import Detections
+from peopleboy.tracker.sensors.thermal.detector.box_regression import encode_boxes
+from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork
+from peopleboy.tracker.sensors.thermal.detector.window import Floats
 
 _HARDLY_VISIBLE: Final = 0.3  # share of occluded or non-upright people that are sampled
 _INSIDE: Final = 0.25  # least share of a box inside the image

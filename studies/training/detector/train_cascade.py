@@ -23,11 +23,16 @@ from peopleboy.studies.training.detector.world_sequences import ThermalImage, lo
 from peopleboy.studies.training.detector.worlds import KINDS, seeds_of
 from peopleboy.studies.training.samples import Split, Tasks
 from peopleboy.studies.training.specification import Specification, report
-from peopleboy.tracker.detector.box_regression import BoxRegression
-from peopleboy.tracker.detector.cascade import Cascade
-from peopleboy.tracker.detector.patches import Patches, Sums, integrate_windows
-from peopleboy.tracker.detector.people_trees import FILE, PeopleModel, PeopleTrees, shipped_people_trees
-from peopleboy.tracker.detector.window import WindowKind
+from peopleboy.tracker.sensors.thermal.detector.box_regression import BoxRegression
+from peopleboy.tracker.sensors.thermal.detector.cascade import Cascade
+from peopleboy.tracker.sensors.thermal.detector.patches import Patches, Sums, integrate_windows
+from peopleboy.tracker.sensors.thermal.detector.people_trees import (
+    FILE,
+    PeopleModel,
+    PeopleTrees,
+    shipped_people_trees,
+)
+from peopleboy.tracker.sensors.thermal.detector.window import WindowKind
 
 Windows = NDArray[np.float16]
 Floats = NDArray[np.float32]

@@ -20,13 +20,13 @@ from peopleboy.studies.training.detector.crop_samples import (
 from peopleboy.studies.training.detector.evaluation import check_labels, log_odds_line
 from peopleboy.studies.training.optimiser import huber
 from peopleboy.tracker.boxes import Floats, iou
-from peopleboy.tracker.detector.box_regression import OFFSETS, encode_boxes
-from peopleboy.tracker.detector.crops import SCORES
-from peopleboy.tracker.detector.detections import Detections
-from peopleboy.tracker.detector.detector import SMALLEST_PX, WEAKEST, detect_with_trees
-from peopleboy.tracker.detector.people_trees import shipped_people_trees
-from peopleboy.tracker.detector.rescoring import RescoringNetwork
 from peopleboy.tracker.networks.inference import CropNetwork
+from peopleboy.tracker.sensors.detections import Detections
+from peopleboy.tracker.sensors.thermal.detector.box_regression import OFFSETS, encode_boxes
+from peopleboy.tracker.sensors.thermal.detector.crops import SCORES
+from peopleboy.tracker.sensors.thermal.detector.detector import SMALLEST_PX, WEAKEST, detect_with_trees
+from peopleboy.tracker.sensors.thermal.detector.people_trees import shipped_people_trees
+from peopleboy.tracker.sensors.thermal.detector.rescoring import RescoringNetwork
 
 POSITIVE: Final = 0.35
 """IoU from which on a detection is a positive."""

@@ -18,8 +18,12 @@ from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.studies.training.detector.worlds import world_of
 from peopleboy.studies.training.samples import Arrays, SampleTask
 from peopleboy.tracker.camera_mount import Mount, mount_of
-from peopleboy.tracker.detector.image_change import EARLIER_S, image_difference, rotation_homography
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.sensors.thermal.detector.image_change import (
+    EARLIER_S,
+    image_difference,
+    rotation_homography,
+)
 
 Floats = NDArray[np.float64]
 Grey = NDArray[np.uint8]

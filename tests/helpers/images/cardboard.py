@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.tracker.frame import Frame, Odometry
-from peopleboy.tracker.panoramic.figure_patch import (
+from peopleboy.tracker.sensors.panorama.figure_patch import (
     ACROSS,
     BOTTOM_M,
     HALF_WIDTH_M,
@@ -22,9 +22,9 @@ from peopleboy.tracker.panoramic.figure_patch import (
     UP,
     FigureMap,
 )
-from peopleboy.tracker.panoramic.panorama_patches import PanoramaScene
-from peopleboy.tracker.panoramic.panorama_view import view_of
-from peopleboy.tracker.panoramic.place_model import PlaceEstimates
+from peopleboy.tracker.sensors.panorama.panorama_patches import PanoramaScene
+from peopleboy.tracker.sensors.panorama.panorama_view import view_of
+from peopleboy.tracker.sensors.panorama.place_model import PlaceEstimates
 from tests.helpers.images.as_taken import as_taken
 
 WIDTH, HEIGHT = 480, 120

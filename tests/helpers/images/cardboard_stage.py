@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.sensors.panorama import PanoramaSensor
+from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaSensor
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.tracking.config import PANORAMIC, PeopleTrackerConfig
 from peopleboy.tracker.tracking.people_tracker import PeopleTracker

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from peopleboy.tracker.contour.contour_config import BoxConfig
-from peopleboy.tracker.contour.variants import CONTOUR
+from peopleboy.tracker.reproductions.contour.contour_config import BoxConfig
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR
 from peopleboy.tracker.track import Track
 
 

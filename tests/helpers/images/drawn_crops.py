@@ -12,9 +12,9 @@ from peopleboy.studies.training.detector.crop_samples import (
     first_weights,
     network_outputs,
 )
-from peopleboy.tracker.detector.box_regression import OFFSETS
-from peopleboy.tracker.detector.crops import CHANNELS, FEATURES, Planes
 from peopleboy.tracker.networks.inference import Architecture
+from peopleboy.tracker.sensors.thermal.detector.box_regression import OFFSETS
+from peopleboy.tracker.sensors.thermal.detector.crops import CHANNELS, FEATURES, Planes
 
 
 def drawn_crops(architecture: Architecture, count: int, seed: int = 0) -> CropSamples:

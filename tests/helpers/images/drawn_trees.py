@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.detector.box_regression import OFFSETS, BoxRegression
-from peopleboy.tracker.detector.cascade import LEAVES, NODES, Cascade
-from peopleboy.tracker.detector.channels import CHANNELS
-from peopleboy.tracker.detector.patches import Patches
-from peopleboy.tracker.detector.window import COLUMNS as WINDOW_COLUMNS
-from peopleboy.tracker.detector.window import ROWS as WINDOW_ROWS
+from peopleboy.tracker.sensors.thermal.detector.box_regression import OFFSETS, BoxRegression
+from peopleboy.tracker.sensors.thermal.detector.cascade import LEAVES, NODES, Cascade
+from peopleboy.tracker.sensors.thermal.detector.channels import CHANNELS
+from peopleboy.tracker.sensors.thermal.detector.patches import Patches
+from peopleboy.tracker.sensors.thermal.detector.window import COLUMNS as WINDOW_COLUMNS
+from peopleboy.tracker.sensors.thermal.detector.window import ROWS as WINDOW_ROWS
 
 TREES = 40
 PLACING_TREES = 7

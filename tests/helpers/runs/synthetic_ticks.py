@@ -20,9 +20,9 @@ from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.truth.truth import Owners, PersonTruth, Truth
 from peopleboy.sim.world_config import WorldConfig
-from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation, Ellipse
-from peopleboy.tracker.contour.particles import Particles
-from peopleboy.tracker.contour.variants import CONTOUR
+from peopleboy.tracker.reproductions.contour.explanation import DETECTOR_KEY, ContourExplanation, Ellipse
+from peopleboy.tracker.reproductions.contour.particles import Particles
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR
 from peopleboy.tracker.track import Status, Track
 
 CAMERA = Pinhole()

@@ -21,7 +21,7 @@ from peopleboy.scenarios.drawing.overlay import (
     show_thermal,
 )
 from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
-from peopleboy.tracker.contour.measurement.section_evidence import outline
+from peopleboy.tracker.reproductions.contour.measurement.section_evidence import outline
 from peopleboy.tracker.track import Status
 from tests.helpers.runs import synthetic_ticks as made
 

@@ -4,9 +4,9 @@ import pytest
 
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import Tracked, outcome_lines
-from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import Radiometry
+from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from tests.helpers.calls.footage_calls import call
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.images.footage_files import box, write_empty, write_folder

@@ -7,8 +7,8 @@ from peopleboy.scenarios.loop.loop import Perception, closed_loop, thermal_box
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import SimulatedWorld
-from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.reproductions.contour.box_interaction import standing_box
 from tests.helpers.runs.hand_made_tracks import track
 
 EMPTY = {

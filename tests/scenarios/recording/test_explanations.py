@@ -25,12 +25,15 @@ from peopleboy.scenarios.recording.explanations import (
 )
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.tracker.attention.people.attentive_explanation import Attended, AttentiveExplanation
-from peopleboy.tracker.attention.people.person_views import PersonView
 from peopleboy.tracker.frame import COLOUR
-from peopleboy.tracker.panoramic.paper.depth_cues import measure
-from peopleboy.tracker.sensors.panorama import PanoramaExplanation
-from peopleboy.tracker.sensors.thermal import DetectionExplanation
+from peopleboy.tracker.reproductions.attention.people.attentive_explanation import (
+    Attended,
+    AttentiveExplanation,
+)
+from peopleboy.tracker.reproductions.attention.people.person_views import PersonView
+from peopleboy.tracker.reproductions.panoramic.depth_cues import measure
+from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaExplanation
+from peopleboy.tracker.sensors.thermal.thermal_sensor import DetectionExplanation
 from peopleboy.tracker.track import FloorPlace
 from peopleboy.tracker.tracking.sensor import SensorExplanations
 from tests.helpers.runs import synthetic_ticks as made

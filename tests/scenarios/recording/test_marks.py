@@ -25,9 +25,9 @@ from peopleboy.scenarios.recording.marks import (
     true_arrows,
     truth_boxes,
 )
-from peopleboy.tracker.contour.measurement.contour import SECTIONS
-from peopleboy.tracker.contour.measurement.section_evidence import Evidence
-from peopleboy.tracker.contour.variants import VARIANTS
+from peopleboy.tracker.reproductions.contour.measurement.contour import SECTIONS
+from peopleboy.tracker.reproductions.contour.measurement.section_evidence import Evidence
+from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from peopleboy.tracker.track import FloorPlace, Status
 from tests.helpers.runs import synthetic_ticks as made
 

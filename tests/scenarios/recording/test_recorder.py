@@ -23,8 +23,8 @@ from peopleboy.scenarios.recording.rows import PIXEL_STEP
 from peopleboy.sim.cameras.kinds import colour_from_thermal
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
-from peopleboy.tracker.contour.measurement.section_evidence import section_lines
-from peopleboy.tracker.contour.variants import VARIANTS
+from peopleboy.tracker.reproductions.contour.measurement.section_evidence import section_lines
+from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.runs import synthetic_ticks as made
 

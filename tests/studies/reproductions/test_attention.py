@@ -12,7 +12,7 @@ from peopleboy.studies.reproductions.experiments.attention import (
     watch_absence,
     watch_focus,
 )
-from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
+from peopleboy.tracker.reproductions.attention.attention_config import PRINTED, AttentionConfig
 
 
 def test_the_longest_time_out_of_sight_is_the_absence_and_who_is_half_in_the_door_is_not_back():

@@ -13,8 +13,8 @@ from peopleboy.studies.reproductions.pictures.tracking_figures import (
     score_example,
     shared,
 )
-from peopleboy.tracker.contour.particles import draw_prior
-from peopleboy.tracker.contour.variants import THESIS
+from peopleboy.tracker.reproductions.contour.particles import draw_prior
+from peopleboy.tracker.reproductions.contour.variants import THESIS
 
 
 @pytest.mark.parametrize(

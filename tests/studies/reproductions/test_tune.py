@@ -16,7 +16,7 @@ from peopleboy.studies.reproductions.tune import (
     chosen_parameters,
     tune,
 )
-from peopleboy.tracker.contour.measurement.contour import section_weights
+from peopleboy.tracker.reproductions.contour.measurement.contour import section_weights
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import refused
 

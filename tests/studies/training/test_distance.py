@@ -7,10 +7,10 @@ import yaml
 
 from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.studies.training.distance import DistanceTraining
-from peopleboy.tracker.panoramic.panorama_view import choose_view
-from peopleboy.tracker.panoramic.paper import distance_network
-from peopleboy.tracker.panoramic.paper.distance_network import DistanceModel, shipped_models
-from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
+from peopleboy.tracker.reproductions.panoramic import distance_network
+from peopleboy.tracker.reproductions.panoramic.distance_network import DistanceModel, shipped_models
+from peopleboy.tracker.reproductions.panoramic.paper_tracker import PanoramicPaperTracker
+from peopleboy.tracker.sensors.panorama.panorama_view import choose_view
 from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.calls.command_line import refusal, run_cli
 

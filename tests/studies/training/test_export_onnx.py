@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from peopleboy.studies.training.export_onnx import NETWORKS, export_onnx
-from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from peopleboy.tracker.networks.inference import CropNetwork
 from peopleboy.tracker.networks.mask_network import INPUTS
 from peopleboy.tracker.networks.weights_archive import SHIPPED
-from peopleboy.tracker.panoramic.paper.distance_network import shipped_models
-from peopleboy.tracker.panoramic.people_foreground import FILE, ForegroundModel
-from peopleboy.tracker.panoramic.place_model import PlaceModel
+from peopleboy.tracker.reproductions.panoramic.distance_network import shipped_models
+from peopleboy.tracker.sensors.panorama.people_foreground import FILE, ForegroundModel
+from peopleboy.tracker.sensors.panorama.place_model import PlaceModel
+from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from tests.helpers.calls.command_line import refusal, run_cli
 
 runtime = pytest.importorskip("onnxruntime")

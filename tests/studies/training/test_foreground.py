@@ -7,7 +7,7 @@ from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.studies.training.foreground import MaskScores, score_masks
 from peopleboy.studies.training.panorama_sequences import PanoramaSequence, render_panoramas
 from peopleboy.studies.training.random_scenes import random_scene
-from peopleboy.tracker.panoramic.people_foreground import ForegroundModel
+from peopleboy.tracker.sensors.panorama.people_foreground import ForegroundModel
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import refused
 

@@ -21,7 +21,7 @@ from peopleboy.studies.training.occlusion import (
     share_right,
 )
 from peopleboy.studies.training.specification import train
-from peopleboy.tracker.contour.occlusion.learned_table import LearnedTable
+from peopleboy.tracker.reproductions.contour.occlusion.learned_table import LearnedTable
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.synthetic_ticks import person

@@ -11,8 +11,8 @@ import pytest
 from peopleboy.studies.training import places
 from peopleboy.studies.training.panorama_sequences import PanoramaSequence
 from peopleboy.studies.training.places import PlaceSamples, sample_places
-from peopleboy.tracker.panoramic.figure_patch import PATCH
-from peopleboy.tracker.panoramic.place_model import INPUTS
+from peopleboy.tracker.sensors.panorama.figure_patch import PATCH
+from peopleboy.tracker.sensors.panorama.place_model import INPUTS
 from tests.helpers.images.cardboard import (
     BLUE,
     CAMERA,

@@ -12,8 +12,8 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.studies.training import places, specification
 from peopleboy.studies.training.panorama_sequences import panorama_calibration
 from peopleboy.studies.training.places import DenseRecipe, PlaceSamples, PlacesTraining, fit_places
-from peopleboy.tracker.panoramic.figure_patch import PATCH
-from peopleboy.tracker.panoramic.place_model import PlaceModel
+from peopleboy.tracker.sensors.panorama.figure_patch import PATCH
+from peopleboy.tracker.sensors.panorama.place_model import PlaceModel
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.images.cardboard import CAMERA, VIEW

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from peopleboy.tracker.detector.crops import CHANNELS
-from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from peopleboy.tracker.networks.convolution import Workspace, convolve
 from peopleboy.tracker.networks.inference import CropNetwork
+from peopleboy.tracker.sensors.thermal.detector.crops import CHANNELS
+from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_crops import drawn_weights
 

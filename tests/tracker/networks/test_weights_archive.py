@@ -6,7 +6,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
-from peopleboy.tracker.panoramic.panorama_view import PanoramaView
+from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaView
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.images import cardboard
 

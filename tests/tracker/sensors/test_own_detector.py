@@ -13,7 +13,7 @@ import pytest
 from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.sensors.own_detector import FileDetector, OwnDetector
-from peopleboy.tracker.sensors.thermal import ThermalSensor
+from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import WITH_DETECTOR, is_own, make_tracker
 from peopleboy.tracker.tracking.config import DetectorScoreConfig

@@ -13,8 +13,8 @@ from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Frame
 from peopleboy.tracker.sensors.depth import DepthExplanation
-from peopleboy.tracker.sensors.panorama import PanoramaExplanation
-from peopleboy.tracker.sensors.thermal import DetectionExplanation
+from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaExplanation
+from peopleboy.tracker.sensors.thermal.thermal_sensor import DetectionExplanation
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import explanation_of, make_tracker
 from peopleboy.tracker.tracking.sensor import parts_of

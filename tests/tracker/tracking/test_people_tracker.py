@@ -10,10 +10,10 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import PinholeCalibration
-from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
-from peopleboy.tracker.sensors.scheduled_detector import ScheduledDetector
-from peopleboy.tracker.sensors.thermal import ThermalSensor
+from peopleboy.tracker.sensors.detections import Detections
+from peopleboy.tracker.sensors.thermal.scheduled_detector import ScheduledDetector
+from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.tracking.config import (
     AssociationConfig,

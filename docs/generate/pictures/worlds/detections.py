@@ -11,10 +11,16 @@ from numpy.typing import NDArray
 from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.studies.training.detector.world_sequences import ThermalSequence, render_thermal
-from peopleboy.tracker.detector.channels import BESIDE, FIRST_DIRECTION, GRADIENT, MOTION, OVER
-from peopleboy.tracker.detector.detections import NO_DETECTIONS
-from peopleboy.tracker.detector.detector import SMALLEST_PX, PeopleDetector
-from peopleboy.tracker.detector.pyramid import pyramid_levels
+from peopleboy.tracker.sensors.detections import NO_DETECTIONS
+from peopleboy.tracker.sensors.thermal.detector.channels import (
+    BESIDE,
+    FIRST_DIRECTION,
+    GRADIENT,
+    MOTION,
+    OVER,
+)
+from peopleboy.tracker.sensors.thermal.detector.detector import SMALLEST_PX, PeopleDetector
+from peopleboy.tracker.sensors.thermal.detector.pyramid import pyramid_levels
 
 WORLDS = (3, 24, 28)
 """Seeds of worlds; the picture shows the image of each with the most clearly visible people."""

@@ -5,8 +5,8 @@ import pytest
 from peopleboy.studies.training.detector import crop_samples, train_cascade
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.studies.training.samples import SampleTask
-from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from peopleboy.tracker.networks.inference import NetworkLayer
+from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from tests.helpers.images.drawn_films import drawn_film
 
 

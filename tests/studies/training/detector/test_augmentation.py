@@ -23,7 +23,7 @@ from peopleboy.studies.training.detector.augmentation import (
 )
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.camera_mount import Mount
-from peopleboy.tracker.detector.window import WindowKind
+from peopleboy.tracker.sensors.thermal.detector.window import WindowKind
 from tests.helpers.images.drawn_films import drawn_film
 
 

@@ -4,7 +4,7 @@ from numpy.typing import NDArray
 
 from peopleboy.studies.training.detector.boosting import Binned, Boosting, Tables
 from peopleboy.studies.training.detector.mining import CELLS
-from peopleboy.tracker.detector.patches import Patches, integrate_windows
+from peopleboy.tracker.sensors.thermal.detector.patches import Patches, integrate_windows
 
 Floats = NDArray[np.float32]
 ONE = Boosting(1, 0.5, features=60, share=1.0, smallest=5)

@@ -11,9 +11,9 @@ from peopleboy.studies.training.detector.crop_samples import CropSamples
 from peopleboy.studies.training.detector.train_box_refinement import BoxRefinementTraining
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.detector.box_regression import decode_boxes
-from peopleboy.tracker.detector.crops import normalise_crops
-from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork
+from peopleboy.tracker.sensors.thermal.detector.box_regression import decode_boxes
+from peopleboy.tracker.sensors.thermal.detector.crops import normalise_crops
+from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork
 from tests.helpers.images.drawn_crops import drawn_crops, drawn_weights, loss_of
 from tests.helpers.images.drawn_films import drawn_film
 

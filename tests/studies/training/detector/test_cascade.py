@@ -13,11 +13,15 @@ from peopleboy.studies.training.detector.train_cascade import fit_boxes, fit_cas
 from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.studies.training.detector.worlds import KINDS
 from peopleboy.studies.training.samples import SampleTask
-from peopleboy.tracker.detector.box_regression import encode_boxes
-from peopleboy.tracker.detector.channels import CHANNELS
-from peopleboy.tracker.detector.patches import Patches, integrate, integrate_windows
-from peopleboy.tracker.detector.people_trees import PeopleModel, PeopleTrees, shipped_people_trees
-from peopleboy.tracker.detector.window import COLUMNS, ROWS, WindowKind
+from peopleboy.tracker.sensors.thermal.detector.box_regression import encode_boxes
+from peopleboy.tracker.sensors.thermal.detector.channels import CHANNELS
+from peopleboy.tracker.sensors.thermal.detector.patches import Patches, integrate, integrate_windows
+from peopleboy.tracker.sensors.thermal.detector.people_trees import (
+    PeopleModel,
+    PeopleTrees,
+    shipped_people_trees,
+)
+from peopleboy.tracker.sensors.thermal.detector.window import COLUMNS, ROWS, WindowKind
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.images.drawn_films import drawn_film

@@ -25,10 +25,10 @@ from peopleboy.studies.training.detector.train_rescoring import RescoringTrainin
 from peopleboy.studies.training.detector.worlds import KINDS, LATER, seeds_of, world_of
 from peopleboy.studies.training.samples import SampleTask, collect_missing
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.detector.box_regression import decode_boxes
-from peopleboy.tracker.detector.crops import CHANNELS, SCORES, normalise_crops
-from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from peopleboy.tracker.networks.inference import CropNetwork
+from peopleboy.tracker.sensors.thermal.detector.box_regression import decode_boxes
+from peopleboy.tracker.sensors.thermal.detector.crops import CHANNELS, SCORES, normalise_crops
+from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from tests.helpers.calls.command_line import run_cli
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_crops import drawn_crops, drawn_weights

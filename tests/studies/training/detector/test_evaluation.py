@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from peopleboy.studies.training.detector import evaluation
 from peopleboy.studies.training.detector.evaluation import DetectionScores, calibrate
 from peopleboy.studies.training.detector.world_sequences import ThermalImage
-from peopleboy.tracker.detector.detections import Detections
-from peopleboy.tracker.detector.people_trees import shipped_people_trees
-from peopleboy.tracker.detector.window import WindowKind
+from peopleboy.tracker.sensors.detections import Detections
+from peopleboy.tracker.sensors.thermal.detector.people_trees import shipped_people_trees
+from peopleboy.tracker.sensors.thermal.detector.window import WindowKind
 from tests.helpers.calls.refused import refused
 
 Floats = NDArray[np.float64]

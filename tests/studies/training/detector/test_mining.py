@@ -8,10 +8,10 @@ from peopleboy.studies.training.detector import mining
 from peopleboy.studies.training.detector.mining import CELLS, patch_pool
 from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.detector.box_regression import decode_boxes
-from peopleboy.tracker.detector.cascade import Cascade
-from peopleboy.tracker.detector.channels import CHANNELS
-from peopleboy.tracker.detector.window import COLUMNS, ROWS, WindowKind
+from peopleboy.tracker.sensors.thermal.detector.box_regression import decode_boxes
+from peopleboy.tracker.sensors.thermal.detector.cascade import Cascade
+from peopleboy.tracker.sensors.thermal.detector.channels import CHANNELS
+from peopleboy.tracker.sensors.thermal.detector.window import COLUMNS, ROWS, WindowKind
 from tests.helpers.images.drawn_films import WIDTH_PER_HEIGHT
 from tests.helpers.images.drawn_trees import drawn_cascade
 

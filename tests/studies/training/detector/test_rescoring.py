@@ -15,8 +15,8 @@ from peopleboy.studies.training.detector.train_rescoring import (
     with_log_odds,
 )
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
-from peopleboy.tracker.detector.crops import CHANNELS, FEATURES, SCORES, normalise_crops
-from peopleboy.tracker.detector.rescoring import RescoringNetwork
+from peopleboy.tracker.sensors.thermal.detector.crops import CHANNELS, FEATURES, SCORES, normalise_crops
+from peopleboy.tracker.sensors.thermal.detector.rescoring import RescoringNetwork
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_crops import drawn_crops, drawn_weights, loss_of
 from tests.helpers.images.drawn_films import drawn_film

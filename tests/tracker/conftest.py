@@ -1,0 +1,12 @@
+"""What tests of the tracker share."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """Draws the same in every test."""
+    return np.random.default_rng(0)

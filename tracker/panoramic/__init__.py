@@ -1,1 +1,0 @@
-"""Trackers for 360-degree panoramic cameras."""

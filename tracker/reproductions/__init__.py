@@ -1,0 +1,1 @@
+"""The trackers and models of the sources: as printed, and our best of the same kind."""

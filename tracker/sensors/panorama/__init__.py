@@ -1,0 +1,1 @@
+"""The sensor of the panoramic camera: the foreground of people, and their places on the floor."""
