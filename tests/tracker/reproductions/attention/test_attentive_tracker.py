@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.tracker.attention.test_attend import GREEN, RED, scene
+from tests.tracker.reproductions.attention.test_attend import GREEN, RED, scene
 
 from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame

@@ -151,7 +151,7 @@ def test_the_same_seed_gives_the_same_tracks_and_another_seed_does_not(name):
 def test_a_fresh_process_gives_the_same_tracks():
     code = (
         "from tests.helpers.images.drawn_people import person_frame; "
-        "from tests.tracker.contour.test_single_person import make; t = make(seed=5); "
+        "from tests.tracker.reproductions.contour.test_single_person import make; t = make(seed=5); "
         "print([t.update(person_frame(i / 15, 60 + i)) for i in range(20)])"
     )
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
