@@ -296,9 +296,8 @@ def _attentive(
 )
 def _attentive_printed(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.reproductions.attention.attention_config import PRINTED
-    from peopleboy.tracker.reproductions.attention.people.attentive_config import AS_FOUND
-    from peopleboy.tracker.reproductions.attention.people.attentive_tracker import AttentiveTracker
-    from peopleboy.tracker.reproductions.attention.people.recogniser import ByFocus
+    from peopleboy.tracker.reproductions.attention.attentive_tracker import AS_FOUND, AttentiveTracker
+    from peopleboy.tracker.reproductions.attention.recogniser import ByFocus
 
     return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByFocus(PRINTED), AS_FOUND)
 

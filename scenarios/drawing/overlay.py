@@ -23,7 +23,7 @@ from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.reproductions.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.reproductions.attention.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation
 from peopleboy.tracker.reproductions.contour.measurement.section_evidence import outline
 from peopleboy.tracker.track import Status, Track

@@ -29,7 +29,7 @@ from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import CameraGeometry, invert_pose, transform
 from peopleboy.tracker.frame import DEPTH, PANORAMA
-from peopleboy.tracker.reproductions.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.reproductions.attention.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.reproductions.contour.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.reproductions.contour.measurement.contour import FEET, SECTIONS
 from peopleboy.tracker.reproductions.contour.measurement.section_evidence import (

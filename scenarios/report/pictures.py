@@ -42,9 +42,9 @@ from peopleboy.sim.cameras.kinds import kind_of, layers_of
 from peopleboy.sim.geometry.pinhole import CameraGeometry
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.reproductions.attention.attend import Focus
-from peopleboy.tracker.reproductions.attention.people.attentive_config import AttentiveConfig
-from peopleboy.tracker.reproductions.attention.people.attentive_explanation import Attended
-from peopleboy.tracker.reproductions.attention.people.person_views import LOOKED_AT, PersonView, box_in
+from peopleboy.tracker.reproductions.attention.attentive_explanation import Attended
+from peopleboy.tracker.reproductions.attention.attentive_tracker import AttentiveConfig
+from peopleboy.tracker.reproductions.attention.person_views import LOOKED_AT, PersonView, box_in
 from peopleboy.tracker.track import Box, Status
 
 SCALE = 2

@@ -18,18 +18,18 @@ from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.reproductions.attention.attend import Focus
-from peopleboy.tracker.reproductions.attention.people.attentive_config import AttentiveConfig
-from peopleboy.tracker.reproductions.attention.people.attentive_explanation import Attended
-from peopleboy.tracker.reproductions.attention.people.attentive_tracker import AttentiveTracker
-from peopleboy.tracker.reproductions.attention.people.person_views import PersonView, box_in
-from peopleboy.tracker.reproductions.attention.people.recogniser import ByColour, ColourLook
+from peopleboy.tracker.reproductions.attention.attentive_explanation import Attended
+from peopleboy.tracker.reproductions.attention.attentive_tracker import AttentiveConfig, AttentiveTracker
+from peopleboy.tracker.reproductions.attention.person_views import PersonView, box_in
+from peopleboy.tracker.reproductions.attention.recogniser import ByColour
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
+from peopleboy.tracker.tracking.appearance import Colours, colour_similarity
 
 SCENARIO, SEED = "absence_10s", 0
 SHOWN_S = (3.0, 13.5, 24.0)
 FOCUS = "#e7298a"
-_LEARNED = AttentiveConfig().first_images
+_LEARNED = 15  # images of the person whose colours are averaged
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ def _watch() -> _Film:
             look = ByColour().learned(look, looks[attended.number], 1.0 / (seen := seen + 1))
         if look is not None and seen == _LEARNED:
             for number, one in looks.items():
-                film.likeness[number].append((frame.time_s, look.likeness(one)))
+                film.likeness[number].append((frame.time_s, colour_similarity(look, one)))
         if world.truth().people[0].visible_fraction < 0.3:
             film.away_s.append(frame.time_s)
         if len(film.moments) < len(SHOWN_S) and frame.time_s >= SHOWN_S[len(film.moments)]:
@@ -86,11 +86,11 @@ def _watch() -> _Film:
     return film
 
 
-def _looks(tracks: tuple[Track, ...], frame: Frame) -> list[tuple[int, ColourLook]]:
+def _looks(tracks: tuple[Track, ...], frame: Frame) -> list[tuple[int, Colours]]:
     found = []
     for track in tracks:
         box = box_in(COLOUR, track, frame)
-        look = None if box is None else ColourLook.of(PersonView(COLOUR, frame.rgb(COLOUR), box))
+        look = None if box is None else ByColour().see(PersonView(COLOUR, frame.rgb(COLOUR), box))
         if look is not None and track.status is Status.TRACKED and THERMAL in track.boxes:
             found.append((track.id, look))
     return found

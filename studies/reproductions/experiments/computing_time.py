@@ -20,8 +20,8 @@ from peopleboy.tracker.reproductions.attention.attend import learn, search
 from peopleboy.tracker.reproductions.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.reproductions.attention.feature_maps import feature_maps
 from peopleboy.tracker.reproductions.attention.image_sums import ImageSums
-from peopleboy.tracker.reproductions.attention.people.person_views import PersonView
-from peopleboy.tracker.reproductions.attention.people.recogniser import ColourLook
+from peopleboy.tracker.reproductions.attention.person_views import PersonView
+from peopleboy.tracker.reproductions.attention.recogniser import ByColour
 from peopleboy.tracker.reproductions.contour.appearance.appearance_model import ColourModel, likelihood
 from peopleboy.tracker.reproductions.contour.appearance.colour_view import ColourView, PowerSums
 from peopleboy.tracker.reproductions.contour.colour_config import ColourDescriptorConfig
@@ -135,7 +135,7 @@ def time_attention(setting: TrackerSetting, steps: int) -> Milliseconds:
         "learning": lambda: learn(sight, box, config),
         "search": lambda: search(sight, look, config),
         "ratio of colours alone": lambda: search(ImageSums.of(image, alone), colours, alone),
-        "somebody's colours": lambda: ColourLook.of(view),
+        "somebody's colours": lambda: ByColour().see(view),
     }
     return {name: milliseconds(work, steps) for name, work in works.items()}
 

@@ -26,11 +26,11 @@ from peopleboy.scenarios.recording.explanations import (
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.tracker.frame import COLOUR
-from peopleboy.tracker.reproductions.attention.people.attentive_explanation import (
+from peopleboy.tracker.reproductions.attention.attentive_explanation import (
     Attended,
     AttentiveExplanation,
 )
-from peopleboy.tracker.reproductions.attention.people.person_views import PersonView
+from peopleboy.tracker.reproductions.attention.person_views import PersonView
 from peopleboy.tracker.reproductions.panoramic.depth_cues import measure
 from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaExplanation
 from peopleboy.tracker.sensors.thermal.thermal_sensor import DetectionExplanation

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import singledispatch
 from typing import Final
 
 import numpy as np
@@ -11,8 +10,7 @@ from numpy.typing import NDArray
 from peopleboy.tracker.reproductions.attention.attend import Focus, PersonModel, learn, search
 from peopleboy.tracker.reproductions.attention.attention_config import AttentionConfig
 from peopleboy.tracker.reproductions.attention.image_sums import ImageSums
-from peopleboy.tracker.reproductions.attention.people.person_views import PersonView
-from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation
+from peopleboy.tracker.reproductions.attention.person_views import PersonView
 
 TRACKING_ATTENTION: Final = AttentionConfig(scales=(0.64, 0.8, 1.0, 1.25, 1.56))
 
@@ -44,9 +42,6 @@ class Attended:
         return search(ImageSums.of(self.image, TRACKING_ATTENTION), self.model, TRACKING_ATTENTION)
 
 
-# Explanation of the attentive tracker.
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class AttentiveExplanation:
     """Explanation of the wrapped tracker, and similarity of people to their identities.
@@ -66,14 +61,3 @@ class AttentiveExplanation:
     def parts(self) -> tuple[object, ...]:
         """The wrapped tracker's explanation."""
         return (self.below,)
-
-
-@singledispatch
-def renumbered(explanation: object, number: Mapping[int, int]) -> object:  # noqa: ARG001
-    """Return an explanation with replaced track ids; one without ids is returned unchanged."""
-    return explanation
-
-
-@renumbered.register
-def _(explanation: ContourExplanation, number: Mapping[int, int]) -> object:
-    return explanation.renumbered(number)

@@ -1,1 +1,0 @@
-"""Re-identification of people by appearance, however long they were absent."""
