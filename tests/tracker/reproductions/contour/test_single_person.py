@@ -2,7 +2,6 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +14,7 @@ from peopleboy.tracker.trackers import TRACKERS, make_tracker
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.contours import head_top, middle, semi_height
 from tests.helpers.images.drawn_people import RADIATOR, blank, draw_person, person_frame
+from tests.helpers.import_graph import ROOT
 
 SEEDS = range(3)
 
@@ -154,7 +154,7 @@ def test_a_fresh_process_gives_the_same_tracks():
         "from tests.tracker.reproductions.contour.test_single_person import make; t = make(seed=5); "
         "print([t.update(person_frame(i / 15, 60 + i)) for i in range(20)])"
     )
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-c", code]
     other = subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout
     assert other.strip() == str(follow([person_frame(i / 15, 60 + i) for i in range(20)], 5))

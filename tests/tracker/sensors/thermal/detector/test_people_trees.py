@@ -17,8 +17,9 @@ from peopleboy.tracker.sensors.thermal.detector.people_trees import (
 from peopleboy.tracker.sensors.thermal.detector.window import WindowKind
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_trees import PATCHES, PLACING_TREES, TREES, drawn_cascade, drawn_placing
+from tests.helpers.import_graph import ROOT
 
-DOCS = Path(__file__).parents[3] / "docs"
+DOCS = ROOT / "docs"
 PLACING = (OFFSETS, PLACING_TREES)
 
 

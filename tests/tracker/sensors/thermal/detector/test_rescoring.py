@@ -1,5 +1,4 @@
 import re
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -16,6 +15,7 @@ from peopleboy.tracker.sensors.thermal.detector.rescoring import (
     rescore,
 )
 from tests.helpers.images.drawn_crops import drawn_weights
+from tests.helpers.import_graph import ROOT
 
 
 def drawn_network(last: float = 0.0) -> RescoringNetwork:
@@ -33,7 +33,7 @@ def smooth_image() -> np.ndarray:
 
 
 MOUNT = Mount(60.0, 160.0, 1.2)
-PAGE = Path(__file__).parents[3] / "docs" / "reference" / "models.md"
+PAGE = ROOT / "docs" / "reference" / "models.md"
 FIRST = Detections.from_trees(
     np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0])
 )
