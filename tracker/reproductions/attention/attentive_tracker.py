@@ -77,7 +77,7 @@ class GalleryEntry(Generic[Appearance]):
 
 
 @dataclass(slots=True)
-class Identity:
+class TrackIdentity:
     """The person that a track of the wrapped tracker follows.
 
     Attributes:
@@ -140,7 +140,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         self._below, self._recogniser = below, recogniser
         self._config = AttentiveConfig() if config is None else config
         self._people: dict[int, GalleryEntry[Appearance]] = {}
-        self._identities: dict[int, Identity] = {}
+        self._identities: dict[int, TrackIdentity] = {}
         self._reported: dict[int, int] = {}
         self._newest = 0
         self._time_s = 0.0
@@ -200,7 +200,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         is_visible = track.status is not Status.TOTALLY_OCCLUDED
         one = self._identities.get(track.id)
         if one is None:
-            one = self._identities[track.id] = Identity(self._new(time_s), time_s, time_s)
+            one = self._identities[track.id] = TrackIdentity(self._new(time_s), time_s, time_s)
         elif is_visible and time_s - one.seen_s > self._config.gap_s:
             if one.number is None or time_s - one.seen_s > self._config.proof_s:
                 one.number, one.is_new = self._new(time_s), True
@@ -230,7 +230,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         if self._attended is None and own.images >= config.learned_images:
             self._attended = Attended.learned(one.number, view)
 
-    def _reidentify(self, one: Identity, seen: Seen) -> None:
+    def _reidentify(self, one: TrackIdentity, seen: Seen) -> None:
         """Give a new person the id of the most similar lost person, if similar enough.
 
         A coasting track with that id loses it.
@@ -256,7 +256,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         self._people[number].seen_s = one.seen_s
         one.number, one.is_new = number, False
 
-    def _score(self, one: Identity, number: int, seen: Seen) -> float | None:
+    def _score(self, one: TrackIdentity, number: int, seen: Seen) -> float | None:
         """Compare a track with a person, and collect the score; None for a person without appearance."""
         known = self._people[number].appearance
         if known is None:
