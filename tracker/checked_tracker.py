@@ -1,14 +1,18 @@
 """A wrapper that validates a tracker's output, so that mistakes are reported where they are made."""
 
 import math
+from array import array
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 from numbers import Real
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import blamed
+from peopleboy.tracker.evaluation.latency import TimedImages
 from peopleboy.tracker.evaluation.sequence import FARTHEST, LARGEST
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
@@ -16,18 +20,22 @@ from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
 
 
 class CheckedTracker:
-    """Returns a tracker's output after validating it.
+    """Returns a tracker's output after validating it, and times each update.
 
     Args:
         tracker: the wrapped tracker.
         who: name for messages, such as "tracker 'my_module:MyTracker'".
         cameras: names of the available cameras.
+
+    Attributes:
+        times_ms: wall time of each update [ms], without the rendering of images.
     """
 
     def __init__(self, tracker: Tracker, who: str, cameras: Collection[str]) -> None:
         self._tracker = tracker
         self._who = who
         self._known = frozenset(cameras)
+        self.times_ms = array("d")
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -56,8 +64,12 @@ class CheckedTracker:
             BadInput: the output is not a tuple of valid tracks.
             OwnCodeFailed: it raised an error.
         """
+        images = TimedImages(frame.images)
+        timed = replace(frame, images=images)
         with blamed(self._who):
-            tracks = self._tracker.update(frame)
+            start_s = perf_counter()
+            tracks = self._tracker.update(timed)
+            self.times_ms.append(1000.0 * (perf_counter() - start_s - images.spent_s))
             for fault in _faults(tracks, self._known):
                 raise BadInput(fault)
             return tracks

@@ -365,23 +365,28 @@ class Output:
 
 
 def output_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add --json and --quiet; the command receives an `Output` named `output`."""
+    """Add --json, --quiet and --progress; the command receives an `Output` named `output`."""
 
     @wraps(command)
-    def with_output(*arguments: Any, as_json: bool, quiet: bool, **options: Any) -> None:
-        output = Output(as_json, quiet)
+    def with_output(*arguments: Any, as_json: bool, quiet: bool, progress: str, **options: Any) -> None:
+        from peopleboy.scenarios.progress_bar import ProgressStyle, progress_as
+
         if quiet:
             configure_logging(logging.ERROR)
-            from peopleboy.scenarios.progress_bar import no_progress
-
-            with no_progress():
-                command(*arguments, output=output, **options)
-        else:
-            command(*arguments, output=output, **options)
+        with progress_as(ProgressStyle.HIDDEN if quiet else ProgressStyle(progress)):
+            command(*arguments, output=Output(as_json, quiet), **options)
 
     as_json = click.option("--json", "as_json", is_flag=True, help="Print the results as one JSON document.")
     quiet = click.option("--quiet", is_flag=True, help="Print only errors and the JSON of --json.")
-    return as_json(quiet(with_output))
+    progress = click.option(
+        "--progress",
+        type=click.Choice(["auto", "plain"]),
+        default="auto",
+        show_default=True,
+        help="Progress on standard error: plain prints a line every 30 s, for logs; auto shows a bar on a "
+        "terminal and lines elsewhere.",
+    )
+    return as_json(quiet(progress(with_output)))
 
 
 class _StandardError(logging.Handler):

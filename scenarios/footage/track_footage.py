@@ -15,6 +15,7 @@ from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.run_files import check_detections
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.evaluation.evaluate import Scores
+from peopleboy.tracker.evaluation.latency import write_latency
 from peopleboy.tracker.footage.box_kinds import BoxKind, boxed_whole, torso_of
 from peopleboy.tracker.footage.footage_truth import GivenTruth, doubts, find_truth, load_truth
 from peopleboy.tracker.frame import DEPTH
@@ -82,6 +83,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
                 times.append(time.perf_counter())
                 report(log.frames, views.expected)
         scores = log.finish()
+        write_latency(folder, tracker.times_ms)
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
         about["notes"] = notes = [*views.notes, *_notes_on(truth, log.size)]
     return Tracked(log.frames, pictures_a_second(times), log.tracks, scores, tuple(notes), kind)

@@ -22,7 +22,7 @@ from peopleboy.scenarios.scores.drive_record import Row
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
 from peopleboy.sim.truth.events import Move
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
-from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, Figure
+from peopleboy.tracker.evaluation.table import FIGURES, IF_KNOWN, Figure
 
 LONGEST = 40  # most runs that are listed individually
 _FEWEST_PAIRS = 3  # fewest runs of the same scenario and seed for an interval of their differences
@@ -172,7 +172,7 @@ def plain_figures(columns: Sequence[Column]) -> PageTable:
 def all_figures(columns: Sequence[Column]) -> PageTable:
     """Show every metric that is defined for some run, with its usual name."""
     every = [scores for column in columns for scores in column.scores]
-    defined = [f for f in FIGURES if f.group != FLOOR or any(map(f.is_defined_for, every))]
+    defined = [f for f in FIGURES if f.group not in IF_KNOWN or any(map(f.is_defined_for, every))]
     return _figures(columns, [(f.name, f.meaning, f.unit, _values(columns, f)) for f in defined])
 
 

@@ -38,6 +38,7 @@ from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.checked_tracker import CheckedTracker
+from peopleboy.tracker.evaluation.latency import write_latency
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.tracker_names import shown_name, with_detector
 from peopleboy.tracker.trackers import knows_again
@@ -200,6 +201,7 @@ def run(
             folder.write(tick, [event.to_json() for event in events])
             report(tick, frames)
         folder.flush()
+        write_latency(options.out, checked.times_ms)
         took_s = time.monotonic() - began_s
         _LOG.info("%s: %.1f s, %.0f frames/s", scenario.name, took_s, frames / max(took_s, 1e-3))
         drive, following, corridor, comfort = observers.drive.record(), None, None, None

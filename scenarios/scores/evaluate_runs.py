@@ -33,6 +33,7 @@ from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.latency import read_latency
 from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind, width_per_height
@@ -290,6 +291,7 @@ def evaluate_runs(folders: Sequence[Path], options: ScoreOptions | None = None) 
 def _evaluate_run(folder: Path, options: ScoreOptions) -> ScoredPeople:
     about = read_run(folder)
     people = _evaluate_opened(folder, about, options)
+    people = replace(people, scores=replace(people.scores, latency=read_latency(folder)))
     note = incomplete(about)
     return replace(people, notes=(*people.notes, note)) if note else people
 

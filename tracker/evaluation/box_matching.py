@@ -13,6 +13,7 @@ from peopleboy.tracker.boxes import Floats, intersection, iou
 from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 
 GATE = 0.5  # a pair must overlap by more than this (thesis, section 3.4)
+ROUNDING = float(np.finfo(np.float64).eps)  # tolerance of thresholds that a pair may just reach
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,8 +14,11 @@ from peopleboy.tracker.evaluation.area_metrics import (
 )
 from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE, Rule, associate, pair_up, settle_uncounted
 from peopleboy.tracker.evaluation.floor import NOWHERE, FloorErrors, Places, measure_floor
-from peopleboy.tracker.evaluation.mot_metrics import MotMetrics, Sums, measure_mot
+from peopleboy.tracker.evaluation.latency import UNTIMED, Latency
+from peopleboy.tracker.evaluation.mot_metrics import MotMetrics, measure_mot
+from peopleboy.tracker.evaluation.ospa import SetDistances, measure_sets
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+from peopleboy.tracker.evaluation.sums import Sums
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +63,18 @@ class Counts(Sums):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scores(Sums):
-    """Scores of one sequence, or of several combined."""
+    """Scores of one sequence, or of several combined.
+
+    Floor errors and latency are empty if they are unknown.
+    """
 
     counts: Counts
     thesis: ThesisMetrics
     paper: PaperMetrics
     mot: MotMetrics
+    sets: SetDistances
     floor: FloorErrors = NOWHERE
+    latency: Latency = UNTIMED
 
     def __repr__(self) -> str:
         """Show the main scores."""
@@ -128,6 +136,7 @@ def evaluate(
         thesis=measure_thesis(judged.truth, judged.tracks, pairs, matched),
         paper=measure_paper(judged.truth, judged.tracks, pairs),
         mot=measure_mot(judged.truth, judged.tracks, pairs),
+        sets=measure_sets(judged.truth, judged.tracks, pairs),
         floor=measure_floor(
             judged.truth.frame[pairs.target[matched]],
             judged.truth.id[pairs.target[matched]],

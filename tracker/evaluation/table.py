@@ -9,7 +9,8 @@ from typing import Final
 
 from peopleboy.tracker.evaluation.evaluate import Scores
 
-FLOOR: Final = "floor"
+IF_KNOWN: Final = frozenset(("floor", "latency"))
+"""Groups of metrics that not all sequences have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +19,7 @@ class Figure:
 
     Attributes:
         name: usual name, unique among the metrics.
-        unit: `%`, `m`, or empty for a plain number.
+        unit: `%`, `m`, `ms`, or empty for a plain number.
         where: path of the metric in `Scores`; its first part is the metric's group.
         meaning: explanation for readers who do not know the name.
     """
@@ -30,19 +31,19 @@ class Figure:
 
     @property
     def group(self) -> str:
-        """Group of the metric: counts, thesis, paper, mot or floor."""
+        """Group of the metric: counts, thesis, paper, mot, sets, floor or latency."""
         return self.where.partition(".")[0]
 
     @property
     def key(self) -> str:
         """Name in JSON files: without spaces, and with the unit at its end."""
-        unit = {"%": "_percent", "m": "_m"}.get(self.unit, "")
-        return self.name.replace("95 %", "p95").replace(" ", "_") + unit
+        unit = {"%": "_percent", "m": "_m", "ms": "_ms"}.get(self.unit, "")
+        return self.name.replace("95 %", "p95").replace("(2)", "2").replace(" ", "_") + unit
 
     def is_defined_for(self, scores: Scores) -> bool:
         """Return whether these scores include the data that the metric needs."""
-        if self.group == FLOOR:
-            return len(scores.floor) > 0
+        if self.group in IF_KNOWN:
+            return len(getattr(scores, self.group)) > 0
         return not (scores.counts.partly_annotated and self.name in NEED_EVERYBODY)
 
     def of(self, scores: Scores) -> float:
@@ -111,6 +112,9 @@ FIGURES: tuple[Figure, ...] = (
     Figure(
         "IDSW", "", "mot.clear.switches", "Identity switches: changes of the track id that matches a person."
     ),
+    Figure("MT", "", "mot.clear.mostly_tracked", "Mostly tracked: people matched in over 80 % of frames."),
+    Figure("ML", "", "mot.clear.mostly_lost", "Mostly lost: people matched in under 20 % of their frames."),
+    Figure("Frag", "", "mot.clear.fragments", "Fragmentations: interruptions of a person's matches."),
     Figure(
         "IDF1",
         "%",
@@ -138,6 +142,13 @@ FIGURES: tuple[Figure, ...] = (
     Figure(
         "AssA", "%", "mot.hota.assa", "Association accuracy: consistency of track ids over matched boxes."
     ),
+    Figure("DetRe", "%", "mot.hota.detre", "Detection recall: matches per person to find."),
+    Figure("DetPr", "%", "mot.hota.detpr", "Detection precision: matches per box."),
+    Figure("AssRe", "%", "mot.hota.assre", "Association recall: share of a person's frames with its track."),
+    Figure("AssPr", "%", "mot.hota.asspr", "Association precision: share of a track's boxes on its person."),
+    Figure("LocA", "%", "mot.hota.loca", "Localisation accuracy: mean IoU of matched boxes."),
+    Figure("OSPA", "", "sets.ospa", "Mean distance of people and boxes in a frame, 0 (equal) to 1."),
+    Figure("OSPA(2)", "", "sets.ospa2", "Distance of people's paths and tracks over the sequence, 0 to 1."),
     Figure("mean error", "m", "floor.mean_m", "Mean distance between estimated and true positions."),
     Figure("median error", "m", "floor.median_m", "Median distance between estimated and true positions."),
     Figure(
@@ -153,6 +164,8 @@ FIGURES: tuple[Figure, ...] = (
         "floor.inside",
         "Share of matches within the 95 % ellipse of the estimated covariance.",
     ),
+    Figure("latency", "ms", "latency.mean_ms", "Mean wall time of an update, after the first second."),
+    Figure("95 % latency", "ms", "latency.p95_ms", "95th percentile of the wall time of an update."),
     Figure("frames", "", "counts.frames", "Number of frames, with or without people."),
     Figure("targets", "", "counts.targets", "Number of boxes of people to find."),
     Figure("candidates", "", "counts.candidates", "Number of tracker boxes that are scored."),
@@ -176,7 +189,8 @@ FIGURES: tuple[Figure, ...] = (
 NEED_EVERYBODY = frozenset(
     (
         *("CP", "CA", "AP", "AA", "OCR", "OCP", "OCA", "BAP", "ADC"),
-        *("MOTA", "FP", "IDF1", "IDP", "HOTA", "DetA", "false_alarms", "false_tracks"),
+        *("MOTA", "FP", "IDF1", "IDP", "HOTA", "DetA", "DetPr", "OSPA", "OSPA(2)"),
+        *("false_alarms", "false_tracks"),
     )
 )
 
@@ -195,7 +209,7 @@ def to_json(scores: Scores) -> dict[str, dict[str, float | int | None]]:
     """Return the metrics by group and key, for JSON: None for undefined."""
     groups: dict[str, dict[str, float | int | None]] = {}
     for row in rows(scores):
-        if row.figure.group == FLOOR and not row.figure.is_defined_for(scores):
+        if row.figure.group in IF_KNOWN and not row.figure.is_defined_for(scores):
             continue
         value = None if math.isnan(row.value) else row.value
         groups.setdefault(row.figure.group, {})[row.figure.key] = value

@@ -11,12 +11,12 @@ from peopleboy.tracker.evaluation.table import FIGURES
 
 
 def metrics(group: str) -> str:
-    """List the metrics of one group: thesis, paper, mot, floor or counts."""
+    """List the metrics of one group: thesis, paper, mot, sets, floor, latency or counts."""
     rows = [
         (
             f"**{figure.name}**",
             f"`{figure.key}`",
-            figure.unit or ("-" if figure.group == "floor" else "count"),
+            figure.unit or ("-" if figure.group in ("floor", "sets") else "count"),
             figure.meaning,
         )
         for figure in FIGURES

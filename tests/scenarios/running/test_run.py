@@ -37,7 +37,7 @@ SCENE = {
 }
 FOLDER = {
     "run.json", "scenario.yaml", "truth", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",
-    "events.jsonl", "metrics.json", "contact_sheet.png",
+    "events.jsonl", "metrics.json", "contact_sheet.png", "latency.txt",
 }  # fmt: skip
 FRAMES = {"thermal", "thermal16", "thermal_scene", "colour"}
 
@@ -56,7 +56,7 @@ def digests(folder: Path) -> dict[str, str]:
     return {
         str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and path.suffix != ".rrd"
+        if path.is_file() and path.suffix != ".rrd" and path.name != "latency.txt"
     }
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.evaluate import combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, NEED_EVERYBODY, rows, spread, to_json
+from peopleboy.tracker.evaluation.table import FIGURES, IF_KNOWN, NEED_EVERYBODY, rows, spread, to_json
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
@@ -105,12 +105,12 @@ def test_every_figure_is_printed_explained_and_fit_for_json(sequence):
     printed = rows(scores)
     assert len({row.figure.name for row in printed}) == len(printed) == len(FIGURES)
     for row in printed:
-        assert row.figure.unit in ("", "%", "m")
+        assert row.figure.unit in ("", "%", "m", "ms")
         assert row.figure.meaning.endswith(".")
         assert isinstance(row.value, int if row.figure.group == "counts" else float | int)
         assert math.isnan(row.value) or row.value <= 100.0 or row.figure.unit == ""
     stored = json.loads(json.dumps(to_json(scores), allow_nan=False))
-    assert list(stored) == ["thesis", "paper", "mot", "counts"]
+    assert list(stored) == ["thesis", "paper", "mot", "sets", "counts"]
     assert {"HOTA_percent", "IDSW"} <= stored["mot"].keys()
     assert not [figure.key for figure in FIGURES if " " in figure.key or "%" in figure.key]
     assert [figure.key for figure in FIGURES if figure.unit == "m"] == [
@@ -153,7 +153,7 @@ def test_boxes_on_others_change_nothing_that_is_told_of_a_person_who_alone_is_an
 def test_every_figure_that_is_not_told_of_one_person_would_have_changed_by_boxes_on_others():
     person, other = (1, 1, *PERSON), (1, 2, 500, 0, 20, 60)
     alone, among = (evaluate(truth_of([person]), tracks_of(boxes)) for boxes in ([person], [person, other]))
-    in_image = [figure for figure in FIGURES if figure.group != FLOOR]
+    in_image = [figure for figure in FIGURES if figure.group not in IF_KNOWN]
     changed = {figure.name for figure in in_image if figure.of(alone) != figure.of(among)}
     assert changed - {"candidates", "tracks"} == NEED_EVERYBODY - {"OCR"}
     lost = evaluate(truth_of([person]), tracks_of([other]))

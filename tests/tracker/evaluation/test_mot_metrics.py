@@ -42,6 +42,8 @@ def assert_equal(ours: MotMetrics, hota: dict, clear: dict, identity: dict) -> N
     assert ours.clear.matches == clear["CLR_TP"]
     assert (ours.clear.misses, ours.clear.false_positives) == (clear["CLR_FN"], clear["CLR_FP"])
     assert ours.clear.switches == clear["IDSW"]
+    assert (ours.clear.mostly_tracked, ours.clear.mostly_lost) == (clear["MT"], clear["ML"])
+    assert ours.clear.fragments == clear["Frag"]
     assert ours.hota.matches.tolist() == np.asarray(hota["HOTA_TP"]).tolist()
     figures = {
         "mota": (ours.clear.mota, clear["MOTA"]),
@@ -52,6 +54,11 @@ def assert_equal(ours: MotMetrics, hota: dict, clear: dict, identity: dict) -> N
         "hota": (ours.hota.hota, np.mean(hota["HOTA"])),
         "deta": (ours.hota.deta, np.mean(hota["DetA"])),
         "assa": (ours.hota.assa, np.mean(hota["AssA"])),
+        "detre": (ours.hota.detre, np.mean(hota["DetRe"])),
+        "detpr": (ours.hota.detpr, np.mean(hota["DetPr"])),
+        "assre": (ours.hota.assre, np.mean(hota["AssRe"])),
+        "asspr": (ours.hota.asspr, np.mean(hota["AssPr"])),
+        "loca": (ours.hota.loca, np.mean(hota["LocA"])),
     }
     for name, (value, expected) in figures.items():
         assert_allclose(np.nan_to_num(value), 100.0 * expected, atol=1e-9, err_msg=name)
