@@ -1,4 +1,4 @@
-"""Estimate the confidence interval of a mean by the bootstrap."""
+"""Statistics of metrics over runs: bootstrap intervals of means, and a paired test."""
 
 import math
 from collections.abc import Sequence
@@ -29,6 +29,40 @@ class Interval:
     def to_json(self) -> list[float | None]:
         """Return mean and bounds, None for undefined ones."""
         return [None if math.isnan(value) else value for value in (self.mean, self.low, self.high)]
+
+
+@dataclass(frozen=True, slots=True)
+class PairedDifference:
+    """Difference of a metric between two trackers, over runs of the same scenes.
+
+    Attributes:
+        interval: mean difference and its interval.
+        p: p-value of the two-sided test that the differences are symmetric about 0; NaN for fewer than two.
+    """
+
+    interval: Interval
+    p: float
+
+
+def compare_pairs(differences: Sequence[float]) -> PairedDifference:
+    """Return mean, interval and p-value of paired differences; NaN is ignored.
+
+    The same differences give the same interval, whatever else is compared.
+
+    Source: F. Wilcoxon, Individual comparisons by ranking methods, Biometrics Bulletin 1, 1945.
+    """
+    return PairedDifference(bootstrap(differences, np.random.default_rng(0)), _wilcoxon(differences))
+
+
+def _wilcoxon(differences: Sequence[float]) -> float:
+    known = [value for value in differences if not math.isnan(value)]
+    if len(known) < 2:
+        return math.nan
+    if not any(known):  # no rank to sum, and no difference
+        return 1.0
+    from scipy import stats  # here, as SciPy's statistics load slowly
+
+    return float(stats.wilcoxon(known).pvalue)
 
 
 def bootstrap(values: Sequence[float], rng: np.random.Generator) -> Interval:

@@ -12,11 +12,12 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.run_folder.finished_run import read_run
-from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
+from peopleboy.scenarios.scores.bootstrap import PairedDifference, compare_pairs
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.evaluate_runs import BoxReference, ScoreOptions, evaluate_runs
+from peopleboy.scenarios.scores.summaries import summarise
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
-from peopleboy.tracker.evaluation.table import FIGURES, spread, to_json
+from peopleboy.tracker.evaluation.table import FIGURES, Figure, to_json
 
 Scene = tuple[str, int]
 """Scenario, or footage, and seed."""
@@ -120,13 +121,13 @@ class Difference:
         tracker: the tracker with the higher metric if a difference is positive.
         other: the tracker it is compared with.
         pairs: number of scenes.
-        figures: mean difference and its interval, by name of the metric.
+        figures: mean difference with its interval and test, by name of the metric.
     """
 
     tracker: str
     other: str
     pairs: int
-    figures: Mapping[str, Interval]
+    figures: Mapping[str, PairedDifference]
 
 
 Groups = Mapping[str, Sequence[ScoredRun]]
@@ -153,64 +154,72 @@ def score_by_tracker(folders: Sequence[Path], options: ScoreOptions | None = Non
     return groups
 
 
-def differences(groups: Groups) -> list[Difference]:
+def differences(groups: Groups, figures: Sequence[Figure] = FIGURES) -> list[Difference]:
     """Compare every other tracker with the first, over the scenes of which each of the two has one run."""
     (first, of_first), *others = groups.items()
-    return [_difference(tracker, runs, first, of_first) for tracker, runs in others]
+    return [_difference(tracker, runs, first, of_first, figures) for tracker, runs in others]
 
 
-_KEYS: Final = {figure.name: figure.key for figure in FIGURES}
-
-
-def figures_of_all(groups: Groups) -> dict[str, Any]:
-    """Return all metrics for JSON: of each run, of each tracker, and differences between trackers."""
+def figures_of_all(groups: Groups, figures: Sequence[Figure] = FIGURES) -> dict[str, Any]:
+    """Return metrics for JSON: of each run, of each tracker, and differences between trackers."""
+    keys = {figure.name: figure.key for figure in figures}
     return {
-        "trackers": {tracker: _together(runs) for tracker, runs in groups.items()},
+        "trackers": {tracker: _together(runs, figures) for tracker, runs in groups.items()},
         "differences": [
             {
                 "tracker": one.tracker,
                 "from": one.other,
                 "pairs": one.pairs,
                 "metrics": {
-                    _KEYS[name]: None if math.isnan(i.mean) else i.to_json()
-                    for name, i in one.figures.items()
+                    keys[name]: None if math.isnan(apart.interval.mean) else apart.interval.to_json()
+                    for name, apart in one.figures.items()
                 },
+                "p": {keys[name]: _or_none(apart.p) for name, apart in one.figures.items()},
             }
-            for one in differences(groups)
+            for one in differences(groups, figures)
         ],
     }
 
 
-def _together(runs: Sequence[ScoredRun]) -> dict[str, Any]:
+def _together(runs: Sequence[ScoredRun], figures: Sequence[Figure]) -> dict[str, Any]:
     scores = [run.scores for run in runs]
-    over = {row.figure.key: row for row in spread(scores)}
+    over = {one.figure.key: one for one in summarise(scores, figures)}
     return {
-        "all_frames": to_json(combine(scores)),
-        "mean_of_runs": {name: None if math.isnan(row.mean) else row.mean for name, row in over.items()},
-        "deviation": {name: None if math.isnan(row.sd) else row.sd for name, row in over.items()},
-        "runs": [_alone(run) for run in runs],
+        "all_frames": to_json(combine(scores), figures),
+        "mean_of_runs": {name: _or_none(one.mean) for name, one in over.items()},
+        "deviation": {name: _or_none(one.sd) for name, one in over.items()},
+        "interval": {name: one.interval.to_json()[1:] for name, one in over.items()},
+        "runs": [_alone(run, figures) for run in runs],
     }
 
 
-def _alone(run: ScoredRun) -> dict[str, Any]:
+def _or_none(value: float) -> float | None:
+    return None if math.isnan(value) else value
+
+
+def _alone(run: ScoredRun, figures: Sequence[Figure]) -> dict[str, Any]:
     scene, seed = (None, None) if run.scene is None else run.scene
     by = {} if run.by is None else {"scored_by": run.by.to_json()}
     about = {"run": run.name, "scene": scene, "seed": seed, "notes": list(run.notes)}
-    return about | {"metrics": by | to_json(run.scores)}
+    return about | {"metrics": by | to_json(run.scores, figures)}
 
 
 def _difference(
-    tracker: str, runs: Sequence[ScoredRun], other: str, of_other: Sequence[ScoredRun]
+    tracker: str,
+    runs: Sequence[ScoredRun],
+    other: str,
+    of_other: Sequence[ScoredRun],
+    figures: Sequence[Figure],
 ) -> Difference:
-    ours, theirs, rng = _once(runs), _once(of_other), np.random.default_rng(0)
+    ours, theirs = _once(runs), _once(of_other)
     scenes = [scene for scene in theirs if scene in ours]
     return Difference(
         tracker,
         other,
         len(scenes),
         {
-            figure.name: bootstrap([figure.of(ours[s]) - figure.of(theirs[s]) for s in scenes], rng)
-            for figure in FIGURES
+            figure.name: compare_pairs([figure.of(ours[s]) - figure.of(theirs[s]) for s in scenes])
+            for figure in figures
         },
     )
 

@@ -7,25 +7,26 @@ from collections.abc import Callable, Mapping, Sequence
 from rich.console import Console
 from rich.table import Table
 
-from peopleboy.scenarios.scores.bootstrap import Interval
+from peopleboy.scenarios.scores.bootstrap import PairedDifference
 from peopleboy.scenarios.scores.by_tracker import Difference, Groups, differences
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.drive_record import Row
+from peopleboy.scenarios.scores.summaries import summarise
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
-from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread
+from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, Figure, rows
 from peopleboy.wording import counted
 
 
-def print_scores(scores: Scores, who: str = "people") -> None:
+def print_scores(scores: Scores, who: str = "people", figures: Sequence[Figure] = FIGURES) -> None:
     """Print the metrics of one run, or of several combined, that the ground truth defines."""
     if scores.counts.partly_annotated:
         _console().print(f"{_single_person(scores)}\n", soft_wrap=True)
     table = _table(who, "figure", "value", "meaning")
-    for row in rows(scores):
+    for row in rows(scores, figures):
         if row.figure.is_defined_for(scores):
             table.add_row(row.figure.name, _number(row.value, row.figure.unit), row.figure.meaning)
     _print(table)
-    _tell_unknown(scores)
+    _print_unknown(scores, figures)
 
 
 def print_drive(title: str, rows: Sequence[Row]) -> None:
@@ -47,57 +48,63 @@ def print_comfort(by_tracker: Mapping[str, ComfortScore]) -> None:
     _print(table)
 
 
-def print_runs(groups: Groups, who: str = "people", note: Callable[[str], None] = lambda _: None) -> None:
+def print_runs(
+    groups: Groups,
+    who: str = "people",
+    note: Callable[[str], None] = lambda _: None,
+    figures: Sequence[Figure] = FIGURES,
+) -> None:
     """Print the metrics of runs: combined for one tracker, side by side for several.
 
     Args:
         groups: the runs by their trackers.
         who: name of the targets in the tables' titles.
         note: called with the caveats of a tracker's metrics, once for all its runs.
+        figures: the metrics to print.
     """
     if len(groups) > 1:
-        _print_beside(groups, who)
+        _print_beside(groups, who, figures)
     else:
         ((tracker, runs),) = groups.items()
         if len(runs) == 1:
-            print_scores(runs[0].scores, who)
+            print_scores(runs[0].scores, who, figures)
         else:
-            _print_spread(tracker, [run.scores for run in runs], who)
+            _print_spread(tracker, [run.scores for run in runs], who, figures)
     for tracker, runs in groups.items():
         for line in next((run.notes for run in runs if run.notes), ()):
             note(f"{tracker}: {line}")
 
 
-def _print_spread(tracker: str, sequences: Sequence[Scores], who: str) -> None:
-    """Print metrics of several runs: of all frames combined, and mean and deviation over runs."""
+def _print_spread(tracker: str, sequences: Sequence[Scores], who: str, figures: Sequence[Figure]) -> None:
+    """Print metrics of several runs: of all frames combined, and mean, deviation and interval over runs."""
     title = f"{who}, {len(sequences)} runs of {tracker}"
-    table = _table(title, "figure", "all frames", "mean of runs", "deviation", "meaning")
+    table = _table(title, "figure", "all frames", "mean of runs", "deviation", "95 % interval", "meaning")
     whole = combine(sequences)
-    for row, over in zip(rows(whole), spread(sequences), strict=True):
-        if not row.figure.is_defined_for(whole):
+    for one in summarise(sequences, figures):
+        if not one.figure.is_defined_for(whole):
             continue
-        unit = row.figure.unit
-        numbers = [_number(value, unit) for value in (row.value, over.mean, over.sd)]
-        table.add_row(row.figure.name, *numbers, row.figure.meaning)
+        numbers = [_number(value, one.figure.unit) for value in (one.whole, one.mean, one.sd)]
+        between = f"{one.interval.low:.2f} to {one.interval.high:.2f}" if one.interval.is_known else "-"
+        table.add_row(one.figure.name, *numbers, between, one.figure.meaning)
     _print(table)
-    _tell_unknown(whole)
+    _print_unknown(whole, figures)
 
 
-def _print_beside(groups: Groups, who: str) -> None:
+def _print_beside(groups: Groups, who: str, figures: Sequence[Figure]) -> None:
     """Print the metrics of each tracker's runs, and the differences over scenes that trackers share."""
     wholes = [combine([run.scores for run in runs]) for runs in groups.values()]
-    compared = differences(groups)
+    compared = differences(groups, figures)
     table = _table(
         f"{who}, all frames of each tracker's runs",
         "figure",
         *[f"{tracker}, {counted(len(runs), 'run')}" for tracker, runs in groups.items()],
         *[f"{one.tracker} - {one.other}, {counted(one.pairs, 'pair')}" for one in compared],
     )
-    for figure in FIGURES:
+    for figure in figures:
         if not any(figure.is_defined_for(whole) for whole in wholes):
             continue
         values = [_number(figure.of(whole), figure.unit) for whole in wholes]
-        apart = [_interval(one.figures[figure.name], figure.unit) for one in compared]
+        apart = [_difference(one.figures[figure.name], figure.unit) for one in compared]
         table.add_row(figure.name, *values, *apart)
     console = Console(width=None if sys.stdout.isatty() else 30 + 30 * (len(wholes) + len(compared)))
     console.print(table)
@@ -109,7 +116,11 @@ def _how_they_differ(compared: Sequence[Difference]) -> str:
     if pairs == 0:
         return "No two runs have the same scenario and seed, so differences between trackers are unknown."
     text = "A difference is the mean over runs of the same scenario and seed"
-    return f"{text}, with its 95 % bootstrap interval." if pairs > 1 else f"{text}; one pair has no interval."
+    return (
+        f"{text}, with its 95 % bootstrap interval and p of the Wilcoxon signed-rank test."
+        if pairs > 1
+        else f"{text}; one pair has no interval."
+    )
 
 
 def _by_what(groups: Groups) -> str:
@@ -121,11 +132,13 @@ def _by_what(groups: Groups) -> str:
     return f" Trackers are scored against different ground truth boxes: {'; '.join(references)}."
 
 
-def _interval(interval: Interval, unit: str) -> str:
+def _difference(apart: PairedDifference, unit: str) -> str:
+    interval = apart.interval
     if math.isnan(interval.mean):
         return "-"
     mean, low, high = (f"{value:+.2f}" for value in (interval.mean, interval.low, interval.high))
-    return f"{mean} {unit}".rstrip() + (f" [{low}, {high}]" if interval.is_known else "")
+    known = f" [{low}, {high}], p = {apart.p:.2g}" if interval.is_known else ""
+    return f"{mean} {unit}".rstrip() + known
 
 
 def _single_person(scores: Scores) -> str:
@@ -138,10 +151,10 @@ def _single_person(scores: Scores) -> str:
     )
 
 
-def _tell_unknown(scores: Scores) -> None:
-    if not scores.counts.partly_annotated:
+def _print_unknown(scores: Scores, figures: Sequence[Figure]) -> None:
+    unknown = [figure.name for figure in figures if figure.name in NEED_EVERYBODY]
+    if not scores.counts.partly_annotated or not unknown:
         return
-    unknown = [row.figure.name for row in rows(scores) if row.figure.name in NEED_EVERYBODY]
     _console().print(
         f"Unknown: {', '.join(unknown)}. Only one person is annotated, so boxes elsewhere may be right "
         "or wrong.\n"

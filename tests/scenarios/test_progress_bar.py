@@ -56,7 +56,8 @@ def test_hidden_progress_prints_nothing(clock: Clock, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize(
-    ("seconds", "text"), [(12.4, "12 s"), (59.9, "60 s"), (60.0, "1 min"), (600.0, "10 min"), (9000.0, "2.5 h")]
+    ("seconds", "text"),
+    [(12.4, "12 s"), (59.9, "60 s"), (60.0, "1 min"), (600.0, "10 min"), (9000.0, "2.5 h")],
 )
 def test_durations_are_given_in_the_unit_that_fits(seconds: float, text: str) -> None:
     assert progress_bar._duration(seconds) == text

@@ -14,7 +14,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import Floats
 
 LATENCY_FILE: Final = "latency.txt"
-WARM_UP: Final = 15  # updates left out at the start of a sequence, in which kernels are compiled
+WARM_UP: Final = 15  # updates excluded at the start of a sequence, in which kernels are compiled
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,5 +94,7 @@ def read_latency(folder: Path) -> Latency:
     try:
         times_ms = np.array(path.read_text(encoding="utf-8").split(), dtype=np.float64)
     except ValueError as error:
-        raise BadInput(f"{path}: must have one time in milliseconds a line; run the scenario again") from error
+        raise BadInput(
+            f"{path}: must have one time in milliseconds a line; run the scenario again"
+        ) from error
     return Latency(times_ms[WARM_UP:])

@@ -9,7 +9,6 @@ trustworthy are performance evaluations for basic vision tasks?" (both with the 
 
 import math
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment

@@ -4,10 +4,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import attrgetter
-from statistics import fmean, stdev
 from typing import Final
 
+from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.evaluate import Scores
+from peopleboy.wording import hint
 
 IF_KNOWN: Final = frozenset(("floor", "latency"))
 """Groups of metrics that not all sequences have."""
@@ -40,6 +41,11 @@ class Figure:
         unit = {"%": "_percent", "m": "_m", "ms": "_ms"}.get(self.unit, "")
         return self.name.replace("95 %", "p95").replace("(2)", "2").replace(" ", "_") + unit
 
+    @property
+    def better(self) -> int:
+        """1 if a larger value is better, -1 if a smaller one is, 0 if neither."""
+        return -1 if self.name in SMALLER_IS_BETTER else 0 if self.name in NEITHER_IS_BETTER else 1
+
     def is_defined_for(self, scores: Scores) -> bool:
         """Return whether these scores include the data that the metric needs."""
         if self.group in IF_KNOWN:
@@ -60,23 +66,6 @@ class Row:
 
     figure: Figure
     value: float
-
-
-@dataclass(frozen=True, slots=True)
-class SpreadRow:
-    """One metric over several sequences.
-
-    Attributes:
-        figure: the metric.
-        mean: mean over the sequences in which the metric is defined; NaN if there is none.
-        sd: their sample standard deviation; NaN if there are fewer than two.
-        sequences: number of sequences in which it is defined.
-    """
-
-    figure: Figure
-    mean: float
-    sd: float
-    sequences: int
 
 
 FIGURES: tuple[Figure, ...] = (
@@ -195,29 +184,44 @@ NEED_EVERYBODY = frozenset(
 )
 
 
-def rows(scores: Scores) -> list[Row]:
-    """Return every metric with its value, for a table."""
-    return [Row(figure, figure.of(scores)) for figure in FIGURES]
+SMALLER_IS_BETTER = frozenset(
+    (
+        *("FN", "FP", "IDSW", "ML", "Frag", "OSPA", "OSPA(2)", "misses", "false_alarms", "false_tracks"),
+        *("mean error", "median error", "95 % error", "latency", "95 % latency"),
+    )
+)
+NEITHER_IS_BETTER = frozenset(("NEES", "in ellipse", "frames", "targets", "candidates", "ignored", "tracks"))
 
 
-def spread(sequences: Sequence[Scores]) -> list[SpreadRow]:
-    """Return every metric with its mean and standard deviation over the sequences."""
-    return [_spread_row(figure, [figure.of(scores) for scores in sequences]) for figure in FIGURES]
+def parse_figures(names: str) -> tuple[Figure, ...]:
+    """Return the metrics with these names, separated by commas; capitals do not matter.
+
+    Raises:
+        BadInput: a name is unknown or given twice.
+    """
+    known = {figure.name.lower(): figure for figure in FIGURES}
+    chosen: list[Figure] = []
+    for name in (part.strip() for part in names.split(",")):
+        figure = known.get(name.lower())
+        if figure is None:
+            raise BadInput(f"unknown metric {name!r}; {hint(name, [each.name for each in FIGURES])}")
+        if figure in chosen:
+            raise BadInput(f"metric {figure.name!r} is given twice; leave one out")
+        chosen.append(figure)
+    return tuple(chosen)
 
 
-def to_json(scores: Scores) -> dict[str, dict[str, float | int | None]]:
-    """Return the metrics by group and key, for JSON: None for undefined."""
+def rows(scores: Scores, figures: Sequence[Figure] = FIGURES) -> list[Row]:
+    """Return metrics with their values, for a table."""
+    return [Row(figure, figure.of(scores)) for figure in figures]
+
+
+def to_json(scores: Scores, figures: Sequence[Figure] = FIGURES) -> dict[str, dict[str, float | int | None]]:
+    """Return metrics by group and key, for JSON: None for undefined."""
     groups: dict[str, dict[str, float | int | None]] = {}
-    for row in rows(scores):
+    for row in rows(scores, figures):
         if row.figure.group in IF_KNOWN and not row.figure.is_defined_for(scores):
             continue
         value = None if math.isnan(row.value) else row.value
         groups.setdefault(row.figure.group, {})[row.figure.key] = value
     return groups
-
-
-def _spread_row(figure: Figure, values: list[float]) -> SpreadRow:
-    defined = [value for value in values if not math.isnan(value)]
-    mean = fmean(defined) if defined else math.nan
-    sd = stdev(defined) if len(defined) > 1 else math.nan
-    return SpreadRow(figure, mean, sd, len(defined))

@@ -50,18 +50,19 @@ def test_a_difference_is_over_the_scenes_that_both_saw_with_the_interval_of_the_
     (one,) = differences(groups)
     assert (one.tracker, one.other, one.pairs) == ("theirs", "ours", 3)
     expected = bootstrap([10.0, 20.0, 30.0], np.random.default_rng(0))
-    assert one.figures["CR"].mean == pytest.approx(20.0)
-    assert (one.figures["CR"].low, one.figures["CR"].high) == pytest.approx(
-        (expected.low, expected.high), abs=2.0
-    )
-    assert 10.0 - 1e-9 <= one.figures["CR"].low < 20.0 < one.figures["CR"].high <= 30.0 + 1e-9
+    apart = one.figures["CR"]
+    assert apart.interval.mean == pytest.approx(20.0)
+    assert (apart.interval.low, apart.interval.high) == pytest.approx((expected.low, expected.high), abs=2.0)
+    assert 10.0 - 1e-9 <= apart.interval.low < 20.0 < apart.interval.high <= 30.0 + 1e-9
+    assert apart.p == pytest.approx(2 / 2**3)  # all three differ in one direction: one of 8 signs, two-sided
 
 
 def test_a_scene_that_a_tracker_saw_twice_has_no_pair() -> None:
     groups = {"ours": runs("ours", a0=10) + runs("ours", a0=12), "theirs": runs("theirs", a0=12)}
     (one,) = differences(groups)
     assert one.pairs == 0
-    assert np.isnan(one.figures["CR"].mean)
+    assert np.isnan(one.figures["CR"].interval.mean)
+    assert np.isnan(one.figures["CR"].p)
 
 
 @pytest.fixture(scope="module")

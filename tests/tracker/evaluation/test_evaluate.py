@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.evaluate import combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.table import FIGURES, IF_KNOWN, NEED_EVERYBODY, rows, spread, to_json
+from peopleboy.tracker.evaluation.table import FIGURES, IF_KNOWN, NEED_EVERYBODY, rows, to_json
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
@@ -116,15 +116,6 @@ def test_every_figure_is_printed_explained_and_fit_for_json(sequence):
     assert [figure.key for figure in FIGURES if figure.unit == "m"] == [
         *("mean_error_m", "median_error_m", "p95_error_m")
     ]
-
-
-def test_the_spread_leaves_out_sequences_in_which_a_figure_is_undefined():
-    found, missed = evaluate(TRUTH, TRACKS), evaluate(TRUTH, tracks_of([]))
-    by_name = {row.figure.name: row for row in spread([found, missed])}
-    assert (by_name["CR"].mean, by_name["CR"].sequences) == (50.0, 2)
-    assert by_name["CR"].sd == pytest.approx(math.sqrt(2 * 50.0**2))
-    assert (by_name["CP"].mean, by_name["CP"].sequences) == (found.thesis.cp, 1)
-    assert math.isnan(by_name["CP"].sd)
 
 
 @st.composite

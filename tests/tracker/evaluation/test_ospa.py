@@ -83,9 +83,7 @@ def test_equal_sets_are_0_apart_and_all_others_at_most_1(sequence):
 def test_a_swap_halfway_costs_nothing_in_a_frame_and_much_over_the_sequence():
     boxes = {1: (0, 0, 10, 30), 2: (50, 0, 10, 30)}
     truth = truth_of([(frame, who, *box) for frame in range(1, 11) for who, box in boxes.items()])
-    swapped = tracks_of(
-        [(f, i if f <= 5 else 3 - i, *box) for f in range(1, 11) for i, box in boxes.items()]
-    )
+    swapped = tracks_of([(f, i if f <= 5 else 3 - i, *box) for f in range(1, 11) for i, box in boxes.items()])
     assert measure(truth, swapped).ospa == pytest.approx(0.0)
     assert measure(truth, swapped).ospa2 == pytest.approx(0.5)
 
