@@ -116,11 +116,9 @@ def _how_they_differ(compared: Sequence[Difference]) -> str:
     if pairs == 0:
         return "No two runs have the same scenario and seed, so differences between trackers are unknown."
     text = "A difference is the mean over runs of the same scenario and seed"
-    return (
-        f"{text}, with its 95 % bootstrap interval and p of the Wilcoxon signed-rank test."
-        if pairs > 1
-        else f"{text}; one pair has no interval."
-    )
+    if pairs == 1:
+        return f"{text}; one pair has no interval."
+    return f"{text}, with its 95 % bootstrap interval and p of the Wilcoxon signed-rank test."
 
 
 def _by_what(groups: Groups) -> str:

@@ -82,12 +82,12 @@ class Hota(Sums):
     @property
     def detre(self) -> float:
         """Detection recall TP / (TP + FN), mean over alpha [%]."""
-        return self._average(cover(self._matches, np.float64(self.targets)))
+        return self._average(cover(self._matches, np.asarray(float(self.targets))))
 
     @property
     def detpr(self) -> float:
         """Detection precision TP / (TP + FP), mean over alpha [%]."""
-        return self._average(cover(self._matches, np.float64(self.candidates)))
+        return self._average(cover(self._matches, np.asarray(float(self.candidates))))
 
     @property
     def assre(self) -> float:

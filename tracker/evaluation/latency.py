@@ -94,7 +94,5 @@ def read_latency(folder: Path) -> Latency:
     try:
         times_ms = np.array(path.read_text(encoding="utf-8").split(), dtype=np.float64)
     except ValueError as error:
-        raise BadInput(
-            f"{path}: must have one time in milliseconds a line; run the scenario again"
-        ) from error
+        raise BadInput(f"{path}: must have one time [ms] a line; run the scenario again") from error
     return Latency(times_ms[WARM_UP:])

@@ -62,11 +62,8 @@ def test_equal_trackers_have_p_1_and_a_single_pair_has_none() -> None:
 
 
 def test_metrics_are_chosen_by_name_and_unknown_ones_refused() -> None:
-    assert [figure.name for figure in parse_figures("hota,IDSW, 95 % error")] == [
-        "HOTA",
-        "IDSW",
-        "95 % error",
-    ]
+    chosen = parse_figures("hota,IDSW, 95 % error")
+    assert [figure.name for figure in chosen] == ["HOTA", "IDSW", "95 % error"]
     with refused("unknown metric 'HOTTA'", "did you mean 'HOTA'"):
         parse_figures("HOTTA")
     with refused("'HOTA'", "twice"):

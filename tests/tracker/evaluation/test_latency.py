@@ -70,7 +70,7 @@ def test_a_run_without_times_has_no_latency_among_its_metrics(tmp_path: Path) ->
 
 def test_other_text_than_times_is_refused(tmp_path: Path) -> None:
     (tmp_path / LATENCY_FILE).write_text("fast\n")
-    with refused(LATENCY_FILE, "milliseconds", "run the scenario again"):
+    with refused(LATENCY_FILE, "one time [ms] a line", "run the scenario again"):
         read_latency(tmp_path)
 
 
