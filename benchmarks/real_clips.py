@@ -18,6 +18,7 @@ from peopleboy.scenarios.running.engine.task import ReportProgress
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_truth
+from peopleboy.tracker.evaluation.protocols import CLASSES, PERSON, RULES, Protocol
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.footage_truth import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.footage.image_sequences import open_footage
@@ -26,6 +27,7 @@ from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 CHOSEN_BY: Final = ("camel_08", "camel_21")
 """The clips that may be used for tuning; all others are only for evaluation."""
 TRUTH: Final = "gt.txt"
+_PEOPLE: Final = replace(RULES[Protocol.PEOPLEBOY], ignored=tuple(kind for kind in CLASSES if kind != PERSON))
 PEERS: Final = {"HOG x 2 + ByteTrack": 2.0, "HOG x 3 + ByteTrack": 3.0}
 """Enlargement of images per peer; HOG detects people from 96 px of the enlarged image on."""
 
@@ -81,7 +83,7 @@ def _open(folder: Path, frames: int | None) -> RealClip:
 def _load(path: Path, frames: int) -> GivenTruth:
     """Read the ground truth; objects that are not people, such as bicycles, are ignored in scoring."""
     if path.name == TRUTH:
-        return GivenTruth(read_truth(path, keeps_things=True), is_single=False, path=path)
+        return GivenTruth(read_truth(path, _PEOPLE), is_single=False, path=path)
     return load_truth(path, frames)
 
 

@@ -198,11 +198,13 @@ def report(runs: Sequence[Path], out: Path | None, output: Output) -> None:
 @click.option(
     "--truth",
     type=PATH,
-    help="Ground-truth file in MOTChallenge format, such as RUN/truth/gt.txt, or in VOT or OTB format "
-    "for one person.",
+    help="Ground-truth file in the format of MOTChallenge, such as RUN/truth/gt.txt, of KITTI or of "
+    "VisDrone, or in VOT or OTB format for one person.",
 )
-@click.option("--tracks", type=PATH, help="Track file in MOTChallenge format, such as RUN/tracks.txt.")
-@options_of("scenarios.scores.evaluate_runs:ScoreOptions", "min_visible", "camera", "boxes")
+@click.option(
+    "--tracks", type=PATH, help="Track file in MOTChallenge or KITTI format, such as RUN/tracks.txt."
+)
+@options_of("scenarios.scores.evaluate_runs:ScoreOptions", "protocol", "min_visible", "camera", "boxes")
 @output_options
 def evaluate(
     runs: Sequence[Path],
@@ -247,7 +249,9 @@ def evaluate(
     elif truth is None or tracks is None:
         raise BadInput("evaluate: --truth and --tracks go together")
     else:
-        scores = evaluate_files(truth, tracks, min_visible=options.min_visible, note=print_note)
+        scores = evaluate_files(
+            truth, tracks, min_visible=options.min_visible, protocol=options.protocol, note=print_note
+        )
         groups = {str(tracks): [ScoredRun(str(tracks), str(tracks), None, scores)]}
     comfort = comfort_by_tracker(groups)
 

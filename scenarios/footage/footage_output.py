@@ -28,7 +28,7 @@ from peopleboy.scenarios.footage.views import Views
 from peopleboy.scenarios.run_folder.run_tables import TRACKS, TableFile, track_row
 from peopleboy.tracker.boxes import Box
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
-from peopleboy.tracker.evaluation.mot_files import read_tracks, track_line, write_truth
+from peopleboy.tracker.evaluation.mot_files import read_tracks, track_line, write_annotations
 from peopleboy.tracker.evaluation.table import to_json
 from peopleboy.tracker.footage.footage_truth import KEPT_SINGLE, GivenTruth
 from peopleboy.tracker.frame import Frame
@@ -196,15 +196,22 @@ class FootageLog:
                 f"{self._truth.path}: must have a line for each of the {self.frames} images, got {last}"
             )
         (self._folder / "truth").mkdir()
-        if self._truth.is_single:
+        if self._truth.table is None:
             shutil.copyfile(self._truth.path, self._folder / KEPT_SINGLE)
         else:
-            write_truth(self._folder / "truth" / "gt.txt", self._truth.truth)
+            write_annotations(self._folder / "truth" / "gt.txt", self._truth.table)
         return self._score(self._truth)
 
     def _score(self, given: GivenTruth) -> Scores:
         tracks = read_tracks(self._folder / "tracks.txt")
-        scores = evaluate(given.truth, tracks, frames=self.frames, is_single=given.is_single)
+        scores = evaluate(
+            given.truth,
+            tracks,
+            frames=self.frames,
+            min_visible=given.min_visible,
+            around=given.around,
+            is_single=given.is_single,
+        )
         text = json.dumps(to_json(scores), indent=2) + "\n"
         (self._folder / "metrics.json").write_text(text, encoding="utf-8")
         return scores

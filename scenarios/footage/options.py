@@ -13,6 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.settings import Metavar
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.boxes import Box, corners
+from peopleboy.tracker.evaluation.protocols import Protocol
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import LEAST_SIDE_PX, Radiometry
 from peopleboy.tracker.tracker_names import is_detection_file, shown_name, split_name
@@ -148,8 +149,15 @@ class TrackOptions:
     truth: Annotated[
         Path | None,
         Field(
-            description="Ground-truth file in VOT, OTB or MOTChallenge format.  [default: the file "
-            "next to the images]"
+            description="Ground-truth file in VOT, OTB, MOTChallenge, KITTI or VisDrone format.  [default: "
+            "the file next to the images]"
+        ),
+    ] = None
+    protocol: Annotated[
+        Protocol | None,
+        Field(
+            description="Which people of the ground truth are scored.  [default: those that its benchmark "
+            "scores, or mot17 if unknown]"
         ),
     ] = None
     boxes: Annotated[

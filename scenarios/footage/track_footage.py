@@ -85,6 +85,8 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
         scores = log.finish()
         write_latency(folder, tracker.times_ms)
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
+        if truth is not None:
+            about["protocol"] = truth.protocol
         about["notes"] = notes = [*views.notes, *_notes_on(truth, log.size)]
     return Tracked(log.frames, pictures_a_second(times), log.tracks, scores, tuple(notes), kind)
 
@@ -112,7 +114,8 @@ def _truth_of(options: TrackOptions, views: Views) -> GivenTruth | None:
         if options.start == "truth":
             raise BadInput(f"--start truth: {options.footage} has no ground truth; give --truth FILE")
         return None
-    return load_truth(path, views.expected if views.is_exact else None, views.numbers)
+    frames = views.expected if views.is_exact else None
+    return load_truth(path, frames, views.numbers, options.protocol)
 
 
 def _notes_on(truth: GivenTruth | None, size: tuple[int, int]) -> list[str]:

@@ -31,10 +31,10 @@ from peopleboy.scenarios.run_folder.run_files import (
 from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRACKS, TRUTH
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.world_config import CONTROL_HZ
-from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.latency import read_latency
 from peopleboy.tracker.evaluation.mot_files import read_tracks
+from peopleboy.tracker.evaluation.protocols import RULES, Protocol, recount
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind, width_per_height
 from peopleboy.tracker.footage.footage_truth import GivenTruth, find_truth, load_truth
@@ -181,87 +181,27 @@ class ScoredPeople:
     notes: tuple[str, ...] = ()
 
 
-def score_people(
-    folder: Path,
-    held: tuple[TrueBoxes, TrackBoxes],
-    frames: int,
-    by: BoxReference,
-    min_visible: float = MIN_VISIBLE,
-) -> ScoredPeople:
-    """Score the tracks of a run: their boxes in a camera's image, and their positions on the floor.
-
-    Boxes are scored in frames with an image of the camera, as others have no ground truth. Positions are
-    scored together with thermal boxes. A tracker without thermal boxes, but with positions, is scored on the
-    floor alone: people and tracks are squares there (`floor_squares`), and all box metrics refer to squares.
-
-    Args:
-        folder: folder of the run, with its tables.
-        held: `read_reference_boxes` of the run: ground truth boxes, and the tracker's boxes.
-        frames: number of frames.
-        by: the ground truth boxes to score against.
-        min_visible: people with at most this visible fraction are not counted.
-
-    Raises:
-        BadInput: a table is missing or unreadable.
-    """
-    truth, tracks = held
-    if by.camera != THERMAL:
-        every = CONTROL_HZ // (cameras_of(folder)[by.camera].rate_hz or CONTROL_HZ)
-        tracks = tracks.take((tracks.frame - 1) % every == 0)
-        scores = evaluate(truth, tracks, frames=frames, min_visible=min_visible)
-        images = replace(scores.counts, frames=len(range(0, frames, every)))
-        return ScoredPeople(replace(scores, counts=images), by, notes_on(folder, by, truth, tracks))
-    robot = read_table(folder / "robot.parquet", ROBOT, POSE)
-    check_robot(folder, robot, frames)
-    people = read_table(folder / "truth.parquet", TRUTH, PEOPLE)
-    beliefs = read_table(folder / "tracks.parquet", TRACKS, BELIEFS)
-    is_on_floor = is_on_floor_alone(beliefs)
-    if is_on_floor:
-        truth, tracks = as_squares(folder, people, beliefs, robot)
-    scores = evaluate(
-        truth,
-        tracks,
-        frames=frames,
-        min_visible=min_visible,
-        standing=places_of_people(people, robot),
-        believed=places_of_tracks(beliefs),
-    )
-    if is_on_floor:
-        return ScoredPeople(scores)
-    return ScoredPeople(scores, by, notes_on(folder, by, truth, tracks))
-
-
-def evaluate_files(
-    truth: Path,
-    tracks: Path,
-    frames: int | None = None,
-    min_visible: float = MIN_VISIBLE,
-    note: Callable[[str], None] = lambda _: None,
-) -> Scores:
-    """Score MOTChallenge tracks against ground truth in any supported format of footage.
-
-    People with at most the visible fraction min_visible are not counted. Metrics that need all people are
-    undefined if the ground truth annotates one person only. `note` receives assumptions about the input.
-    """
-    given = load_truth(truth, None)
-    for text in given.notes:
-        note(text)
-    return _score(given, read_tracks(tracks), frames, min_visible)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScoreOptions:
     """People and boxes that are scored; positions on the floor are scored with thermal boxes."""
 
+    protocol: Annotated[
+        Protocol | None,
+        Field(
+            description="Which people are scored: as in a benchmark, or peopleboy, which ignores people "
+            "who are fully occluded.  [default: peopleboy for rendered runs, else the benchmark of the truth "
+            "file, or mot17 if unknown]"
+        ),
+    ] = None
     min_visible: Annotated[
-        float,
+        float | None,
         Field(
             ge=0.0,
             lt=1.0,
             description="Score only people with more than this visible fraction. For example, 0.3 "
-            "excludes slivers at the image border.",
+            "excludes slivers at the image border.  [default: 0 with peopleboy; benchmarks score all]",
         ),
-    ] = MIN_VISIBLE
+    ] = None
     camera: Annotated[
         str | None,
         Field(
@@ -276,6 +216,89 @@ class ScoreOptions:
             "that each run was scored against]"
         ),
     ] = None
+
+    def least_visible(self, protocol: Protocol) -> float | None:
+        """Return the visible fraction up to which people are ignored; None if all are scored."""
+        return RULES[protocol].min_visible if self.min_visible is None else self.min_visible
+
+
+_DEFAULT: Final = ScoreOptions()
+
+
+def score_people(
+    folder: Path,
+    held: tuple[TrueBoxes, TrackBoxes],
+    frames: int,
+    by: BoxReference,
+    options: ScoreOptions = _DEFAULT,
+) -> ScoredPeople:
+    """Score the tracks of a run: their boxes in a camera's image, and their positions on the floor.
+
+    Boxes are scored in frames with an image of the camera, as others have no ground truth. Positions are
+    scored together with thermal boxes. A tracker without thermal boxes, but with positions, is scored on the
+    floor alone: people and tracks are squares there (`floor_squares`), and all box metrics refer to squares.
+
+    Args:
+        folder: folder of the run, with its tables.
+        held: `read_reference_boxes` of the run: ground truth boxes, and the tracker's boxes.
+        frames: number of frames.
+        by: the ground truth boxes to score against.
+        options: which people are scored.
+
+    Raises:
+        BadInput: a table is missing or unreadable.
+    """
+    truth, tracks = held
+    protocol = options.protocol or Protocol.PEOPLEBOY
+    min_visible = options.least_visible(protocol)
+    if by.camera != THERMAL:
+        every = CONTROL_HZ // (cameras_of(folder)[by.camera].rate_hz or CONTROL_HZ)
+        tracks = tracks.take((tracks.frame - 1) % every == 0)
+        truth, around = recount(truth, protocol)
+        scores = evaluate(truth, tracks, frames=frames, min_visible=min_visible, around=around)
+        images = replace(scores.counts, frames=len(range(0, frames, every)))
+        return ScoredPeople(replace(scores, counts=images), by, notes_on(folder, by, truth, tracks))
+    robot = read_table(folder / "robot.parquet", ROBOT, POSE)
+    check_robot(folder, robot, frames)
+    people = read_table(folder / "truth.parquet", TRUTH, PEOPLE)
+    beliefs = read_table(folder / "tracks.parquet", TRACKS, BELIEFS)
+    is_on_floor = is_on_floor_alone(beliefs)
+    if is_on_floor:
+        truth, tracks = as_squares(folder, people, beliefs, robot)
+    counted, around = recount(truth, protocol)
+    scores = evaluate(
+        counted,
+        tracks,
+        frames=frames,
+        min_visible=min_visible,
+        around=around,
+        standing=places_of_people(people, robot),
+        believed=places_of_tracks(beliefs),
+    )
+    if is_on_floor:
+        return ScoredPeople(scores)
+    return ScoredPeople(scores, by, notes_on(folder, by, truth, tracks))
+
+
+def evaluate_files(
+    truth: Path,
+    tracks: Path,
+    frames: int | None = None,
+    min_visible: float | None = None,
+    protocol: Protocol | None = None,
+    note: Callable[[str], None] = lambda _: None,
+) -> Scores:
+    """Score MOTChallenge or KITTI tracks against ground truth in any supported format of footage.
+
+    By default, the people are scored that the truth's benchmark scores; `protocol` chooses another one.
+    People with at most the visible fraction min_visible are ignored. Metrics that need all people are
+    undefined if the ground truth annotates one person only. `note` receives assumptions about the input.
+    """
+    given = load_truth(truth, None, protocol=protocol, tracks=tracks)
+    for text in given.notes:
+        note(text)
+    options = ScoreOptions(protocol=protocol, min_visible=min_visible)
+    return _score(given, read_tracks(tracks), frames, options)
 
 
 def evaluate_runs(folders: Sequence[Path], options: ScoreOptions | None = None) -> list[ScoredPeople]:
@@ -306,7 +329,7 @@ def _evaluate_opened(folder: Path, about: Mapping[str, Any], options: ScoreOptio
         held = (given.truth, found)
     else:
         held = read_reference_boxes(folder, by)
-    return score_people(folder, held, about["frames"], by, options.min_visible)
+    return score_people(folder, held, about["frames"], by, options)
 
 
 def _evaluate_texts(folder: Path, frames: int, options: ScoreOptions) -> ScoredPeople:
@@ -314,14 +337,15 @@ def _evaluate_texts(folder: Path, frames: int, options: ScoreOptions) -> ScoredP
     for option, value in (("--camera", options.camera), ("--boxes", options.boxes)):
         if value is not None and value != THERMAL:
             raise BadInput(f"{option} {value}: {folder} has no scenario tables; omit the option")
-    return ScoredPeople(_score(*_read_texts(folder, frames), frames, options.min_visible))
+    given, found = _read_texts(folder, frames, options.protocol)
+    return ScoredPeople(_score(given, found, frames, options))
 
 
-def _read_texts(folder: Path, frames: int) -> tuple[GivenTruth, TrackBoxes]:
+def _read_texts(folder: Path, frames: int, protocol: Protocol | None = None) -> tuple[GivenTruth, TrackBoxes]:
     truth = find_truth(folder)
     if truth is None:
         raise BadInput(f"{folder}: has no ground truth; give --truth with --tracks")
-    given, found = load_truth(truth, None), read_tracks(folder / "tracks.txt")
+    given, found = load_truth(truth, None, protocol=protocol), read_tracks(folder / "tracks.txt")
     check_end(given.truth, truth, frames)
     check_end(found, folder / "tracks.txt", frames)
     check_whole(folder, given.truth, found)
@@ -339,5 +363,14 @@ def _said(folder: Path, camera: str, about: Mapping[str, Any]) -> BoxKind:
     return kind_of_boxes(folder, camera, tracker, BoxKind(said))
 
 
-def _score(given: GivenTruth, found: TrackBoxes, frames: int | None, min_visible: float) -> Scores:
-    return evaluate(given.truth, found, frames=frames, min_visible=min_visible, is_single=given.is_single)
+def _score(
+    given: GivenTruth, found: TrackBoxes, frames: int | None, options: ScoreOptions = _DEFAULT
+) -> Scores:
+    return evaluate(
+        given.truth,
+        found,
+        frames=frames,
+        min_visible=options.least_visible(given.protocol),
+        around=given.around,
+        is_single=given.is_single,
+    )

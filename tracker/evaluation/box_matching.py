@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.boxes import Floats, intersection, iou
+from peopleboy.tracker.boxes import Floats, area, cover, intersection, iou
+from peopleboy.tracker.evaluation.protocols import EMPTY, MORE_THAN_HALF, Surroundings
 from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 
-GATE = 0.5  # a pair must overlap by more than this (thesis, section 3.4)
+GATE = MORE_THAN_HALF  # a pair must overlap by more than this (thesis, section 3.4)
 ROUNDING = float(np.finfo(np.float64).eps)  # tolerance of thresholds that a pair may just reach
 
 
@@ -91,8 +92,8 @@ def _span(frame: Ints, frames: Ints) -> tuple[Ints, Ints]:
 
 # Handling of people that the tracker is not required to find.
 #
-# A truth row is ignored if the person is nearer than 3 m or farther than 10 m (`counted` is False), or if the
-# visible fraction is at most `min_visible` (by default: fully occluded). Ignored people never count as
+# A truth row is ignored if the person is not counted, such as one who is nearer than 3 m or farther than 10 m
+# (`counted` is False), or if the visible fraction is at most `min_visible`. Ignored people never count as
 # misses. There are two rules for candidates on them:
 #
 # - `ignore` (default, as the distractors of MOTChallenge): a candidate on an ignored person is neither right
@@ -113,7 +114,7 @@ class Judged:
     Attributes:
         truth: the evaluated targets.
         tracks: the evaluated candidates.
-        ignored: the removed candidates on ignored people.
+        ignored: the removed candidates, on ignored people or in ignored regions.
     """
 
     truth: TrueBoxes
@@ -121,19 +122,24 @@ class Judged:
     ignored: TrackBoxes
 
 
-def counts(counted: Flags, visible: Floats, min_visible: float = MIN_VISIBLE) -> Flags:
+def counts(counted: Flags, visible: Floats, min_visible: float | None = MIN_VISIBLE) -> Flags:
     """Return which people are targets: counted, and with more than a least visible fraction.
 
     Args:
         counted: (N,) whether the truth counts the person.
         visible: (N,) visible fraction, 0..1.
-        min_visible: that fraction.
+        min_visible: that fraction; None to count people whatever their visible fraction.
     """
-    return np.asarray(counted & (visible > min_visible))
+    return counted if min_visible is None else np.asarray(counted & (visible > min_visible))
 
 
 def settle_uncounted(
-    truth: TrueBoxes, tracks: TrackBoxes, *, rule: Rule = "ignore", min_visible: float = MIN_VISIBLE
+    truth: TrueBoxes,
+    tracks: TrackBoxes,
+    *,
+    rule: Rule = "ignore",
+    min_visible: float | None = MIN_VISIBLE,
+    around: Surroundings = EMPTY,
 ) -> Judged:
     """Remove the ignored people by the named rule.
 
@@ -142,26 +148,53 @@ def settle_uncounted(
     """
     if rule not in get_args(Rule):
         raise BadInput(f"unknown uncounted {rule!r}; choose from {', '.join(get_args(Rule))}")
-    if not 0.0 <= min_visible <= 1.0:
+    if min_visible is not None and not 0.0 <= min_visible <= 1.0:
         raise BadInput(f"min_visible must be 0 to 1, got {min_visible}")
     counted = counts(truth.counted, truth.visible, min_visible)
     truth = replace(truth, counted=counted)
     if rule == "ignore":
-        return ignore_uncounted(truth, tracks)
+        return ignore_uncounted(truth, tracks, around)
     return Judged(truth.take(counted), tracks, tracks.take(np.zeros(len(tracks), dtype=np.bool_)))
 
 
-def ignore_uncounted(truth: TrueBoxes, tracks: TrackBoxes, gate: float = GATE) -> Judged:
+def ignore_uncounted(truth: TrueBoxes, tracks: TrackBoxes, around: Surroundings = EMPTY) -> Judged:
     """Remove the ignored people, and the candidates on them.
 
-    All people are matched together at the largest sum of overlaps: where an ignored person and a target share
-    a position, a candidate belongs to the one that it overlaps more. Each ignored person removes at most one
-    candidate; of two candidates on one ignored person, one is a false positive.
+    All people and objects are matched together at the largest sum of overlaps: where an ignored person and a
+    target share a position, a candidate belongs to the one that it overlaps more. Each ignored person
+    removes at most one candidate; of two candidates on one ignored person, one is a false positive.
+    Candidates that match nothing are removed if they are low, or mostly in an ignored region.
 
-    Source: TrackEval 1.0, `MotChallenge2DBox.get_preprocessed_seq_data`, of distractors.
+    Source: TrackEval 1.0, `get_preprocessed_seq_data` of `MotChallenge2DBox` and `Kitti2DBox`.
     """
-    pairs = pair_up(truth, tracks)
-    chosen = associate(pairs, gate)
-    is_ignored = np.zeros(len(tracks), dtype=np.bool_)
-    is_ignored[pairs.candidate[chosen][~truth.counted[pairs.target[chosen]]]] = True
+    everything = _with_objects(truth, around.objects)
+    pairs = pair_up(everything, tracks)
+    chosen = associate(pairs, around.gate)
+    is_ignored = _is_beside(tracks, around)
+    is_ignored[pairs.candidate[chosen]] = ~everything.counted[pairs.target[chosen]]
     return Judged(truth.take(truth.counted), tracks.take(~is_ignored), tracks.take(is_ignored))
+
+
+def _with_objects(truth: TrueBoxes, objects: TrueBoxes) -> TrueBoxes:
+    """Join people and objects, whose candidates stay, under ids of their own."""
+    if not len(objects):
+        return truth
+    further = objects.id + truth.id.max(initial=0) + 1
+    return replace(
+        truth,
+        frame=np.concatenate([truth.frame, objects.frame]),
+        id=np.concatenate([truth.id, further]),
+        box=np.concatenate([truth.box, objects.box]),
+        counted=np.concatenate([truth.counted, np.ones(len(objects), dtype=np.bool_)]),
+        visible=np.concatenate([truth.visible, objects.visible]),
+    )
+
+
+def _is_beside(tracks: TrackBoxes, around: Surroundings) -> Flags:
+    """Return which candidates (N,) are too low, or lie to more than half in one ignored region."""
+    is_low = tracks.box[:, 3] <= around.least_height_px + ROUNDING
+    is_beside = np.asarray(is_low & (around.least_height_px > 0.0))
+    pairs = pair_up(around.regions, tracks)
+    inside = cover(pairs.shared, area(tracks.box[pairs.candidate]))
+    is_beside[pairs.candidate[inside > GATE + ROUNDING]] = True
+    return is_beside

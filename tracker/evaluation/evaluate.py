@@ -17,6 +17,7 @@ from peopleboy.tracker.evaluation.floor import NOWHERE, FloorErrors, Places, mea
 from peopleboy.tracker.evaluation.latency import UNTIMED, Latency
 from peopleboy.tracker.evaluation.mot_metrics import MotMetrics, measure_mot
 from peopleboy.tracker.evaluation.ospa import SetDistances, measure_sets
+from peopleboy.tracker.evaluation.protocols import EMPTY, Surroundings
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.evaluation.sums import Sums
 
@@ -29,8 +30,8 @@ class Counts(Sums):
         frames: frames of the sequence, with or without people.
         targets: boxes of people to be found.
         candidates: boxes of the tracker.
-        ignored: further boxes of the tracker, removed because they lie on ignored people.
-        matches: candidates that match a target (thesis, section 3.4).
+        ignored: further boxes of the tracker, removed because they lie on ignored people or in ignored
+        regions. matches: candidates that match a target (thesis, section 3.4).
         tracks: track ids, ignored or not.
         false_tracks: track ids whose boxes never match a person, counted or ignored.
         partly_annotated: frames of sequences in which only one person is annotated.
@@ -91,7 +92,8 @@ def evaluate(
     *,
     frames: int | None = None,
     uncounted: Rule = "ignore",
-    min_visible: float = MIN_VISIBLE,
+    min_visible: float | None = MIN_VISIBLE,
+    around: Surroundings = EMPTY,
     is_single: bool = False,
     standing: Places | None = None,
     believed: Places | None = None,
@@ -108,7 +110,8 @@ def evaluate(
             target or a candidate. Only `counts.frames` depends on it.
         uncounted: whether candidates on uncounted people are ignored (`ignore`) or false positives
             (`absent`).
-        min_visible: people with at most this visible fraction are uncounted as well.
+        min_visible: people with at most this visible fraction are uncounted as well; None to score all.
+        around: what is annotated besides people.
         is_single: whether only one person is annotated. Boxes elsewhere are then neither right nor wrong, and
             metrics that depend on them are undefined (`table.FIGURES`).
         standing: true positions on the floor; None if unknown.
@@ -118,7 +121,7 @@ def evaluate(
         BadInput: a target or candidate is beyond `frames`, or an argument is out of range.
     """
     frames = _length(truth, tracks, frames)
-    judged = settle_uncounted(truth, tracks, rule=uncounted, min_visible=min_visible)
+    judged = settle_uncounted(truth, tracks, rule=uncounted, min_visible=min_visible, around=around)
     pairs = pair_up(judged.truth, judged.tracks)
     matched = associate(pairs)
     found_ids = np.concatenate([judged.tracks.id[pairs.candidate[matched]], judged.ignored.id])

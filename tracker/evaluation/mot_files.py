@@ -1,107 +1,178 @@
 """Ground truth and tracks as MOTChallenge text: one line per box, comma separated, frames from 1.
 
 Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. PeopleBoy writes
-class 1 (person) only. Of the other classes of MOT16 to MOT20, distractors are read as uncounted. If the last
-columns are missing, or -1 for unknown, all lines are counted and visible people. Lines of ten numbers end
-with a world position instead of class and visible fraction, as in MOT15.
+class 1 (person) only. If the last columns are missing, or -1 for unknown, all lines are counted and visible
+people. Lines of ten numbers end with a world position instead of class and visible fraction, as in MOT15, or
+are VisDrone's. A protocol says which classes and people are scored.
 
-Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position). The last three may
-be missing.
+Results: frame, id, left, top, width, height, confidence, and what a tracker adds, which is not read. A
+missing confidence is 1.
 
 Detections: frame, -1, left, top, width, height, score, -1, -1, -1. What follows the height may be missing;
 score -1 means that there is none, unless other scores are negative, too.
 
-Values may be separated by white space instead, as in some trackers' results.
+Values may be separated by white space instead, and a line may end with a comma. Truth and results in KITTI's
+format are recognised by the word in the third column.
 
 An empty file is a sequence without people, a tracker without tracks, or a detector without detections.
 """
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import Floats
+from peopleboy.tracker.evaluation.kitti_files import is_kitti, kitti_tracks, kitti_truth, own_ids
+from peopleboy.tracker.evaluation.protocols import (
+    CLASSES,
+    CROWD,
+    DISTRACTOR,
+    FLAG,
+    PERSON,
+    RULES,
+    VISIBLE,
+    Protocol,
+    Rules,
+    apply_protocol,
+)
 from peopleboy.tracker.evaluation.sequence import Ints, Rows, TrackBoxes, TrueBoxes, find_fault
 
 TRUTH_COLUMNS = "frame, id, left, top, width, height, counted, class, visible fraction"
-TRACKS_COLUMNS = "frame, id, left, top, width, height, confidence, x, y, z"
+TRACKS_COLUMNS = "frame, id, left, top, width, height, confidence, ..."
 DETECTION_COLUMNS = "frame, -1, left, top, width, height, score"
-PERSON = 1
-DISTRACTORS = (2, 7, 8, 12)  # person on vehicle, static person, distractor, reflection
-CLASSES = range(1, 14)
 WIDTHS = range(6, 11)
 """Allowed numbers of values per line of truth, and of detections."""
-TRACK_WIDTHS = range(7, 11)
-"""Allowed numbers of values per line of results."""
+TRACK_WIDTHS = range(6, 33)
+"""Allowed numbers of values per line of results, of which the first seven are read."""
 
-_PLACED = 10  # values of a line with a position, of which the first 7 are read
+_READ = 7  # values of a line of results, and of a line of truth with a position
+_PLACED = 10  # values of a line with a position
 _UNKNOWN = -1.0
+_PER_CENT = 2.0  # least visible fraction in a file from which all are taken for per cent
+_CLASSED_WIDTHS = (8, 9, 11)  # of results that have a class where others have a position
 
 Kind = TypeVar("Kind", bound=Rows)
 
 
-def read_truth(path: Path, *, keeps_things: bool = False) -> TrueBoxes:
-    """Read a truth file (`gt.txt`); distractors are uncounted, and objects are removed, as in TrackEval.
-
-    Args:
-        path: the file.
-        keeps_things: whether objects are kept as uncounted, so that a box on one, such as on a bicycle with a
-            person on it, is not a false positive.
+def read_truth(path: Path, rules: Rules = RULES[Protocol.PEOPLEBOY]) -> TrueBoxes:
+    """Read the people of a truth file (`gt.txt`), by default as in a rendered run.
 
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
     """
-    return truth_of(path, read_rows(path), keeps_things=keeps_things)
+    return apply_protocol(path, read_annotations(path).table, rules)[0]
 
 
-def read_rows(path: Path) -> Floats:
-    """Read the lines of a truth file as numbers (N, 9), without interpreting them.
+class Annotations(NamedTuple):
+    """The lines of a truth file.
 
-    Missing values are 1: counted, person, visible.
+    Attributes:
+        table: (N, 9) frame, id, left, top, width, height, flag, class of MOTChallenge, visible fraction.
+        protocol: the protocol that the format belongs to; None for MOTChallenge's.
+        is_per_cent: whether the visible fractions were given in per cent.
+    """
+
+    table: Floats
+    protocol: Protocol | None = None
+    is_per_cent: bool = False
+
+
+def read_annotations(path: Path, protocol: Protocol | None = None) -> Annotations:
+    """Read the lines of a truth file, without choosing among people. Missing values are 1.
+
+    Args:
+        path: the file.
+        protocol: what the file belongs to, which settles what lines of ten numbers mean; None if unknown.
 
     Raises:
         BadInput: the file cannot be read, or a line is not numeric, or has another length than the first.
     """
-    given = _read_table(path, TRUTH_COLUMNS, WIDTHS)
-    columns = TRUTH_COLUMNS.count(",") + 1
-    given = given[:, : 7 if given.shape[1] == _PLACED else columns]
+    lines = _read_lines(path)
+    if lines and is_kitti(lines[0]):
+        return Annotations(kitti_truth(path, lines), Protocol.KITTI)
+    given = _as_table(path, lines, TRUTH_COLUMNS, WIDTHS)
+    columns = VISIBLE + 1
+    if given.shape[1] == _PLACED:
+        if protocol is Protocol.VISDRONE or (protocol is None and _is_visdrone(given)):
+            return Annotations(_from_visdrone(given), Protocol.VISDRONE)
+        given = given[:, : columns if _has_class(given, protocol) else _READ]
     table = np.ones((len(given), columns))
-    table[:, : given.shape[1]] = given
-    others = table[:, 6:]
+    table[:, : given.shape[1]] = given[:, :columns]
+    others = table[:, FLAG:]
     others[others == _UNKNOWN] = 1.0
+    visible = table[:, VISIBLE]
+    if is_per_cent := bool(_PER_CENT <= visible.max(initial=0.0) <= 100.0):
+        visible /= 100.0
+    return Annotations(table, None, is_per_cent)
+
+
+def _has_class(given: Floats, protocol: Protocol | None) -> bool:
+    """Return whether lines of ten numbers (N, 10) have a class and a visible fraction, not a position."""
+    if protocol is None or not RULES[protocol].has_classes or protocol is Protocol.PEOPLEBOY:
+        return False
+    is_share = (given[:, 8] >= 0.0) & (given[:, 8] <= 1.0)
+    return bool((np.isin(given[:, 7], CLASSES) & is_share).all())
+
+
+# VisDrone: frame, id, left, top, width, height, flag, category, truncation (0 or 1), occlusion (0 to 2).
+
+_CATEGORIES: Final = range(12)
+_REGION, _PEDESTRIAN, _PEOPLE, _OTHERS = 0, 1, 2, 11
+_OCCLUDED: Final = np.array([1.0, 0.75, 0.25])  # middles of the ranges: none, up to a half, more than that
+
+
+def _is_visdrone(given: Floats) -> bool:
+    """Return whether lines of ten numbers (N, 10) are VisDrone's, and no positions."""
+    kind, truncated, occluded = given[:, 7:].T
+    allowed = np.isin(kind, _CATEGORIES) & np.isin(truncated, (0, 1)) & np.isin(occluded, (0, 1, 2))
+    return bool(len(given) and allowed.all() and kind.any())
+
+
+def _from_visdrone(given: Floats) -> Floats:
+    """Return VisDrone's rows (N, 10) as annotations (N, 9) with classes of MOTChallenge."""
+    table = given[:, :9].copy()
+    category = given[:, 7]
+    table[:, 1] = own_ids(given[:, 1], category == _REGION)
+    table[:, 7] = np.select(
+        [np.isin(category, (_PEDESTRIAN, _PEOPLE)), category == _REGION, category == _OTHERS],
+        [PERSON, CROWD, DISTRACTOR],
+        default=CLASSES[2],  # a car
+    )
+    table[:, 8] = _OCCLUDED[given[:, 9].clip(0, 2).astype(np.int64)]
     return table
 
 
-def truth_of(path: Path, table: Floats, *, keeps_things: bool = False) -> TrueBoxes:
-    """Make ground truth from the rows (N, 9) of a file, as `read_truth` does.
-
-    Raises:
-        BadInput: a row is impossible (the message names its line).
-    """
-    kind = table[:, 7]
-    for row in np.flatnonzero(~np.isin(kind, CLASSES))[:1]:
-        raise BadInput(f"{path}:{row + 1}: class must be 1 (person) to 13, got {kind[row]:g}")
-    is_distractor = (kind != PERSON) if keeps_things else np.isin(kind, DISTRACTORS)
-    truth = _build(path, TrueBoxes, table, counted=table[:, 6], visible=table[:, 8])
-    if (kind == PERSON).all():
-        return truth
-    counted = np.where(is_distractor, 0.0, table[:, 6])
-    is_there = is_distractor | (kind == PERSON)
-    people = table[is_there]
-    return _build(path, TrueBoxes, people, counted=counted[is_there], visible=people[:, 8])
-
-
 def read_tracks(path: Path) -> TrackBoxes:
-    """Read a tracker's results (`tracks.txt`), without the world position in the last three columns.
+    """Read a tracker's results (`tracks.txt`), without what follows the confidence.
 
     Raises:
-        BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
+        BadInput: the file cannot be read, one of its lines is malformed, or a box is of another class than
+            people (the message names the line).
     """
-    table = _read_table(path, TRACKS_COLUMNS, TRACK_WIDTHS)
-    return _build(path, TrackBoxes, table, confidence=table[:, 6])
+    lines = _read_lines(path)
+    if lines and is_kitti(lines[0]):
+        table = kitti_tracks(path, lines)
+    else:
+        table = _as_table(path, lines, TRACKS_COLUMNS, TRACK_WIDTHS)
+        _check_class(path, table)
+        table = table[:, :_READ]
+    if table.shape[1] < _READ:
+        table = np.column_stack([table, np.ones(len(table))])
+    return _build(path, TrackBoxes, table, confidence=table[:, FLAG])
+
+
+def _check_class(path: Path, table: Floats) -> None:
+    """Refuse results of several classes, where the eighth value is one."""
+    if table.shape[1] not in _CLASSED_WIDTHS:
+        return
+    for row in np.flatnonzero(table[:, 7] > PERSON)[:1]:
+        raise BadInput(
+            f"{path}:{row + 1}: class must be 1 (person), got {table[row, 7]:g}; remove the boxes of other "
+            f"classes"
+        )
 
 
 class DetectionRows(NamedTuple):
@@ -129,7 +200,7 @@ def read_detections(path: Path) -> DetectionRows:
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
     """
-    table = _read_table(path, DETECTION_COLUMNS, WIDTHS)
+    table = _as_table(path, _read_lines(path), DETECTION_COLUMNS, WIDTHS)
     frame, box = table[:, 0], table[:, 2:6]
     score = table[:, 6] if table.shape[1] > DETECTION_COLUMNS.count(",") else np.full(len(table), _UNKNOWN)
     fault = find_fault({"frame": frame, "box": box, "confidence": score})
@@ -161,9 +232,23 @@ def write_tracks(path: Path, tracks: TrackBoxes) -> None:
     _write_lines(path, [track_line(*row) for row in zip(*columns, strict=True)])
 
 
-def truth_line(frame: int, identity: int, box: Sequence[float], counted: bool, visible: float) -> str:
-    """Return the line of one person in one frame, newline included."""
-    return f"{_start(frame, identity, box)},{counted:d},1,{visible:.4f}\n"
+def write_annotations(path: Path, table: Floats) -> None:
+    """Write annotations (N, 9) as a truth file, with the decimals of `write_truth`.
+
+    Raises:
+        BadInput: the file cannot be written.
+    """
+    lines = []
+    for frame, identity, *box, flag, kind, visible in table.tolist():
+        lines.append(truth_line(int(frame), int(identity), box, flag != 0.0, visible, int(kind)))
+    _write_lines(path, lines)
+
+
+def truth_line(
+    frame: int, identity: int, box: Sequence[float], counted: bool, visible: float, kind: int = PERSON
+) -> str:
+    """Return the line of one person, or one object of another class, in one frame, newline included."""
+    return f"{_start(frame, identity, box)},{counted:d},{kind},{visible:.4f}\n"
 
 
 def track_line(frame: int, identity: int, box: Sequence[float], confidence: float) -> str:
@@ -176,15 +261,24 @@ def detection_line(frame: int, box: Sequence[float], score: float) -> str:
     return track_line(frame, -1, box, score)
 
 
-def _read_table(path: Path, names: str, widths: range) -> Floats:
-    """Read the lines as numbers; all must have the first line's length, which must be one of these."""
+def _read_lines(path: Path) -> list[str]:
+    """Read the lines of a text file, without empty ones at its end.
+
+    Raises:
+        BadInput: it cannot be read.
+    """
     try:
-        lines = path.read_text(encoding="utf-8").split("\n")
+        lines = path.read_text(encoding="utf-8-sig").split("\n")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "not a text file"
         raise BadInput(f"{path}: cannot be read as MOTChallenge text: {reason}") from error
     while lines and not lines[-1].strip():
         lines.pop()  # the newline after the last line, and trailing empty lines
+    return lines
+
+
+def _as_table(path: Path, lines: Sequence[str], names: str, widths: range) -> Floats:
+    """Read the lines as numbers; all must have the first line's length, which must be one of these."""
     count = len(_cells_of(lines[0])) if lines else widths[-1]
     if count in widths:
         widths = range(count, count + 1)
@@ -206,7 +300,11 @@ def _parse_line(line: str, names: str, widths: range, where: str) -> list[float]
 
 
 def _cells_of(line: str) -> list[str]:
-    return line.split(",") if "," in line else line.split()
+    """Split a line at commas, or else semicolons, or else white space; a separator may end it."""
+    for separator in (",", ";"):
+        if separator in line:
+            return line.strip().removesuffix(separator).split(separator)
+    return line.split()
 
 
 def _build(path: Path, kind: type[Kind], table: Floats, **others: Floats) -> Kind:

@@ -1,5 +1,6 @@
-"""Ground truth of recorded footage: VOT, OTB and MOTChallenge."""
+"""Ground truth of recorded footage: VOT, OTB, MOTChallenge, KITTI and VisDrone."""
 
+import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,14 +12,27 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import Floats
-from peopleboy.tracker.evaluation.mot_files import WIDTHS, read_rows, truth_of
+from peopleboy.tracker.evaluation.kitti_files import is_kitti
+from peopleboy.tracker.evaluation.mot_files import WIDTHS, read_annotations
+from peopleboy.tracker.evaluation.protocols import (
+    CLASS,
+    EMPTY,
+    FLAG,
+    RULES,
+    VEHICLE,
+    VISIBLE,
+    Protocol,
+    Surroundings,
+    apply_protocol,
+    named_protocol,
+)
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.image_sequences import beside
-from peopleboy.wording import counted
+from peopleboy.tracker.footage.sequence_info import NAME as INFO
+from peopleboy.tracker.footage.sequence_info import sequence_name
 
 # Implausible truth causes a note rather than an error: it may be correct.
 
-_VEHICLE: Final = 6  # class of MOTChallenge
 _MOST_OUTSIDE: Final = 0.1  # share of boxes that are entirely beyond the pictures' right or lower edge
 _LEAST_SPREAD: Final = 0.25  # of the width: a smaller spread of boxes may be real
 
@@ -163,12 +177,23 @@ class GivenTruth:
         is_single: whether only one person is annotated.
         path: the file.
         notes: reinterpretations, to be reported once.
+        protocol: which people are scored.
+        around: what is annotated besides people.
+        table: (N, 9) all annotations, with frames counted from the first picture; None for a single person.
     """
 
     truth: TrueBoxes
     is_single: bool
     path: Path
     notes: tuple[str, ...] = ()
+    protocol: Protocol = Protocol.PEOPLEBOY
+    around: Surroundings = EMPTY
+    table: Floats | None = None
+
+    @property
+    def min_visible(self) -> float | None:
+        """Least visible fraction by the protocol; None if all people are scored."""
+        return RULES[self.protocol].min_visible
 
     def box_at(self, frame: int) -> tuple[float, float, float, float]:
         """Return the box of the first person in a frame.
@@ -189,17 +214,25 @@ def find_truth(footage: Path) -> Path | None:
     return next((path for path in places if path.is_file()), None)
 
 
-def load_truth(path: Path, frames: int | None, numbers: range | None = None) -> GivenTruth:
+def load_truth(
+    path: Path,
+    frames: int | None,
+    numbers: range | None = None,
+    protocol: Protocol | None = None,
+    tracks: Path | None = None,
+) -> GivenTruth:
     """Read a truth file; the format is recognised by its lines.
 
     Lines of 4 numbers are x, y, w, h (OTB, VOT), lines of 8 or more even numbers a polygon (VOT), one line
     per frame; NaN or an empty box marks a frame without the person. Lines of 6 to 10 numbers that begin with
-    frame and id, an empty file and a gt.txt are MOTChallenge's.
+    frame and id, an empty file and a gt.txt are MOTChallenge's or VisDrone's; lines with a word are KITTI's.
 
     Args:
         path: the file.
         frames: number of pictures, which the lines of a single person must match; None if unknown.
         numbers: those in the pictures' names, which MOTChallenge's frames may use; None if there are none.
+        protocol: which people are scored; None for the protocol of the file's benchmark.
+        tracks: file of the tracks that are scored, whose name may mention the benchmark.
 
     Raises:
         BadInput: the file cannot be read, or does not match the pictures.
@@ -207,49 +240,81 @@ def load_truth(path: Path, frames: int | None, numbers: range | None = None) -> 
     if not path.exists():
         raise BadInput(f"{path}: no such file")
     try:
-        lines = path.read_text(encoding="utf-8").split("\n")
+        lines = path.read_text(encoding="utf-8-sig").split("\n")
     except (OSError, UnicodeDecodeError) as error:
         raise BadInput(f"{path}: cannot be read as truth; give a text file of boxes") from error
     while lines and not lines[-1].strip():
         lines.pop()
-    if path.name == "gt.txt" or is_motchallenge(lines, path):
-        return _of_everybody(path, frames, numbers)
+    if path.name == "gt.txt" or (lines and is_kitti(lines[0])) or is_motchallenge(lines, path):
+        return _of_everybody(path, frames, numbers, protocol, tracks)
     boxes = [_box(line, f"{path}:{number}") for number, line in enumerate(lines, start=1)]
     if frames is not None and len(boxes) != frames:
         raise BadInput(f"{path}: must have a line for each of the {frames} pictures, got {len(boxes)}")
     return GivenTruth(_single(boxes), is_single=True, path=path)
 
 
-def _of_everybody(path: Path, frames: int | None, numbers: range | None) -> GivenTruth:
-    """Read MOTChallenge's lines; nobody ever visible means that it is missing, but in runs of ours."""
-    rows, notes, is_own = read_rows(path), list[str](), (path.parent.parent / _EXACT).is_file()
+def _of_everybody(
+    path: Path, frames: int | None, numbers: range | None, asked: Protocol | None, tracks: Path | None
+) -> GivenTruth:
+    """Read the truth of all people; nobody ever visible means that it is missing, but in runs of ours."""
+    stated = asked or _protocol_of_run(path.parent.parent)
+    named = stated or _named(path, tracks)
+    rows, of_format, is_per_cent = read_annotations(path, named)
+    notes, is_own = list[str](), stated is Protocol.PEOPLEBOY
+    if is_per_cent:
+        notes.append(f"{path}: the visible fraction is taken for per cent")
     if not len(rows) and not is_own:
         notes.append(f"{path}: it is empty, which says that nobody is there")
     rows[:, 0] -= frames_before(rows[:, 0], numbers, path, notes)
-    if len(rows) and not rows[:, 8].any() and not is_own:
-        rows[:, 8] = 1.0
+    if len(rows) and not rows[:, VISIBLE].any() and not is_own:
+        rows[:, VISIBLE] = 1.0
         notes.append(f"{path}: the visible fraction is 0 in all lines; it is taken as missing")
-    notes += [] if is_own else _doubts_about_rows(rows, path)
-    truth = truth_of(path, rows)
-    if frames is not None and truth.last_frame > frames:
-        raise BadInput(f"{path}: must end with frame {frames}, the last picture, got {truth.last_frame}")
-    return GivenTruth(truth, is_single=False, path=path, notes=tuple(notes))
+    protocol = stated or of_format or named or Protocol.MOT17
+    if stated is None and _matters(rows):
+        notes.append(_describe(path, protocol, rows, is_known=bool(of_format or named)))
+    truth, around = apply_protocol(path, rows, RULES[protocol])
+    last = int(rows[:, 0].max(initial=0.0))
+    if frames is not None and last > frames:
+        raise BadInput(f"{path}: must end with frame {frames}, the last picture, got {last}")
+    return GivenTruth(
+        truth,
+        is_single=False,
+        path=path,
+        notes=tuple(notes),
+        protocol=protocol,
+        around=around,
+        table=rows,
+    )
 
 
-def _doubts_about_rows(rows: Floats, path: Path) -> list[str]:
-    """Return notes on rows (N, 9) that benchmarks score in another way."""
-    notes = []
-    if hidden := int(np.count_nonzero((rows[:, 6] > 0.0) & (rows[:, 8] == 0.0))):
-        notes.append(
-            f"{path}: {counted(hidden, 'box', 'boxes')} of visible fraction 0 not scored; MOTChallenge does "
-            "score them, and so does this command without that column"
-        )
-    if (rows[:, 7] == _VEHICLE).any():
-        notes.append(
-            f"{path}: class {_VEHICLE} (non-motorised vehicle) is ignored as in MOT17; in MOT20 it is a "
-            "distractor, as class 8 is here"
-        )
-    return notes
+def _protocol_of_run(folder: Path) -> Protocol | None:
+    """Return the protocol that a run was scored by; None for a folder that is none of our runs."""
+    if (folder / _EXACT).is_file():
+        return Protocol.PEOPLEBOY
+    try:
+        about = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+        return Protocol(about.get("protocol", Protocol.PEOPLEBOY))
+    except (OSError, ValueError, AttributeError):
+        return None
+
+
+def _named(path: Path, tracks: Path | None) -> Protocol | None:
+    """Return the protocol that a sequence's description or the paths of the files mention."""
+    info = next((each for each in (home / INFO for home in path.parents[:2]) if each.is_file()), None)
+    parts = [*(() if tracks is None else tracks.resolve().parts), *path.resolve().parts]
+    return named_protocol([*parts, "" if info is None else sequence_name(info)])
+
+
+def _matters(rows: Floats) -> bool:
+    """Return whether protocols differ on rows (N, 9): other classes, or people flagged or hidden."""
+    return bool((rows[:, FLAG:] != 1.0)[:, :2].any() or (rows[:, VISIBLE] == 0.0).any())
+
+
+def _describe(path: Path, protocol: Protocol, rows: Floats, *, is_known: bool) -> str:
+    why = "as its path or format says" if is_known else "as nothing names another benchmark"
+    is_there = (rows[:, CLASS] == VEHICLE).any() and protocol is Protocol.MOT17
+    also = f" (class {VEHICLE} is a distractor in mot20 only)" if is_there else ""
+    return f"{path}: scored by the protocol {protocol}, {why}{also}; --protocol chooses another"
 
 
 def _box(line: str, where: str) -> NDArray[np.float64]:

@@ -27,12 +27,10 @@ def rate_in(path: Path) -> float | None:
     Raises:
         BadInput: the file cannot be read, or the rate is invalid.
     """
-    parser = ConfigParser(interpolation=None)
     try:
-        parser.read_string(path.read_text(encoding="utf-8-sig"))
+        raw = _parse(path).get("Sequence", "frameRate", fallback=None)
     except (OSError, UnicodeDecodeError, ConfigError) as error:
         raise BadInput(f"{path}: cannot be read; mend or remove it, or give --rate-hz") from error
-    raw = parser.get("Sequence", "frameRate", fallback=None)
     if raw is None:
         return None
     low, high = RATES_HZ
@@ -46,6 +44,20 @@ def rate_in(path: Path) -> float | None:
             "mend it, or give --rate-hz"
         )
     return rate
+
+
+def sequence_name(path: Path) -> str:
+    """Return the sequence's name; empty if the file does not have it, or cannot be read."""
+    try:
+        return _parse(path).get("Sequence", "name", fallback="")
+    except (OSError, UnicodeDecodeError, ConfigError):
+        return ""
+
+
+def _parse(path: Path) -> ConfigParser:
+    parser = ConfigParser(interpolation=None)
+    parser.read_string(path.read_text(encoding="utf-8-sig"))
+    return parser
 
 
 # Odometry from a text file.

@@ -216,9 +216,52 @@ def test_doubts_are_told_with_the_scores(tmp_path):
     assert "note: truth: 100% of the boxes are outside" in result.stderr
 
 
-def test_rows_that_benchmarks_score_in_another_way_are_noted(tmp_path):
+def test_the_protocol_of_rows_that_protocols_score_in_different_ways_is_noted(tmp_path):
     path = tmp_path / "gt.txt"
     path.write_text("1,1,2,3,4,5,1,1,0\n2,1,2,3,4,5,1,1,1\n2,2,9,3,4,5,1,6,1\n")
-    hidden, vehicle = load_truth(path, None).notes
-    assert_names(hidden, "1 box of visible fraction 0")
-    assert_names(vehicle, "class 6", "MOT20")
+    (note,) = load_truth(path, None).notes
+    assert_names(note, "mot17", "class 6", "mot20", "--protocol")
+    path.write_text("1,1,2,3,4,5,1,1,0.5\n")
+    assert not load_truth(path, None).notes
+
+
+@pytest.mark.parametrize(
+    ("place", "protocol"),
+    [
+        ("MOT20/train/MOT20-01/gt", "mot20"),
+        ("2DMOT2015/train/TUD-Campus/gt", "mot15"),
+        ("DanceTrack/val/dancetrack0004/gt", "dancetrack"),
+        ("mot17-results/MOT16-02/gt", "mot16"),
+        ("sequences/one/gt", "mot17"),
+    ],
+)
+def test_the_path_of_a_truth_file_names_its_protocol(tmp_path, place, protocol):
+    path = tmp_path / place / "gt.txt"
+    path.parent.mkdir(parents=True)
+    path.write_text("1,1,2,3,4,5,1,1,0\n")
+    assert load_truth(path, None).protocol == protocol
+    (path.parent.parent / "seqinfo.ini").write_text("[Sequence]\nname=MOT20-05\n")
+    assert load_truth(path, None).protocol == "mot20"
+    assert load_truth(path, None, protocol="kitti").protocol == "kitti"
+
+
+def test_visible_fractions_in_per_cent_are_read_as_such(tmp_path):
+    path = tmp_path / "gt.txt"
+    path.write_text("1,1,2,3,4,5,1,1,80\n2,1,2,3,4,5,1,1,100\n")
+    given = load_truth(path, None)
+    assert given.truth.visible.tolist() == [0.8, 1.0]
+    assert "per cent" in given.notes[0]
+
+
+def test_visdrone_has_categories_flags_occlusion_and_regions(tmp_path):
+    path = tmp_path / "uav0000.txt"
+    path.write_text(
+        "1,1,10,10,20,60,1,1,0,0\n1,2,50,10,20,60,1,2,0,1\n1,3,90,10,20,60,0,1,0,2\n"
+        "1,4,130,10,60,30,1,4,0,0\n1,0,200,0,80,80,0,0,0,0\n1,0,300,0,80,80,0,0,0,0\n"
+    )
+    given = load_truth(path, None)
+    assert given.protocol == "visdrone"
+    assert given.truth.id.tolist() == [1, 2, 3]
+    assert given.truth.counted.tolist() == [True, True, False]
+    assert given.truth.visible.tolist() == [1.0, 0.75, 0.25]
+    assert (len(given.around.objects), len(given.around.regions)) == (1, 2)
