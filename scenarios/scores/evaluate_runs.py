@@ -189,8 +189,8 @@ class ScoreOptions:
         Protocol | None,
         Field(
             description="Which people are scored: as in a benchmark, or peopleboy, which ignores people "
-            "who are fully occluded.  [default: peopleboy for rendered runs, else the benchmark of the truth "
-            "file, or mot17 if unknown]"
+            "who are fully occluded.  [default: peopleboy for rendered runs, else the benchmark of the "
+            "ground-truth file, or mot17 if unknown]"
         ),
     ] = None
     min_visible: Annotated[
