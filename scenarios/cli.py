@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import click
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, shortened
 from peopleboy.own_code import OwnCodeFailed
 from peopleboy.scenarios.commands.command_options import british
 from peopleboy.scenarios.commands.dataset_commands import export, render
@@ -41,7 +41,6 @@ _ADVICE: Final = {
 
 _ELSE: Final = "check the path, its rights and its disk"
 
-_LONGEST: Final = 500
 SECTIONS: Final[Mapping[str, tuple[click.Command, ...]]] = {
     "Core": (list_command, show, run, sweep, view, report),
     "Score": (evaluate, compare, import_tracks),
@@ -113,16 +112,11 @@ def main(arguments: Sequence[str] | None = None) -> Any:
         if error.errno is None:  # raised by a library, not by the system
             raise
         advice = _ADVICE.get(error.errno, _ELSE)
-        click.echo(f"peopleboy: {_shorten(str(error))}; {advice}", err=True)
+        click.echo(f"peopleboy: {shortened(str(error))}; {advice}", err=True)
         code = BAD_INPUT if error.errno == errno.ENAMETOOLONG else FAILED
     sys.exit(code if isinstance(code, int) else 0)
 
 
 def _complain(message: str) -> int:
-    click.echo(f"peopleboy: {_shorten(' '.join(message.split()))}", err=True)
+    click.echo(f"peopleboy: {shortened(' '.join(message.split()))}", err=True)
     return BAD_INPUT
-
-
-def _shorten(message: str) -> str:
-    """Cut the middle out of a long message: its start says where, its end what would be right."""
-    return message if len(message) < _LONGEST else f"{message[:300]} ... {message[-150:]}"

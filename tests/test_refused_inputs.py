@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import errno
 import gc
+import json
 import os
 import pickle
 import time
@@ -25,6 +26,8 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.recorded_drives import pack_drive, read_drive
 from peopleboy.sim.physics.urdf import read_links, read_urdf
+from peopleboy.tracker.tracker_names import with_detector
+from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.runs import toy_runs as toy
 
@@ -125,6 +128,26 @@ def test_pipes_and_long_names_are_refused_before_they_are_read(
     assert [path.name for path in tmp_path.iterdir()] == ["f.yaml"]
 
 
+def test_a_file_of_detections_may_be_no_pipe(tmp_path: Path) -> None:
+    path = tmp_path / "f.txt"
+    os.mkfifo(path)
+    with pytest.raises(BadInput, match="is a pipe or a device"):
+        make_tracker(with_detector("detection", str(path)))
+
+
+def test_text_without_end_and_links_in_a_ring_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    large, ring = tmp_path / "large.txt", tmp_path / "ring"
+    with large.open("wb") as file:
+        file.truncate(10**11)
+    ring.symlink_to(ring)
+    run = toy.write_run(tmp_path / "run")
+    assert "at most" in refusal(capsys, "evaluate", "--truth", large, "--tracks", run / "tracks.txt")
+    assert "at most" in refusal(capsys, "evaluate", "--truth", run / "truth/gt.txt", "--tracks", large)
+    assert "cannot be a path" in refusal(capsys, "track", ring, "--out", tmp_path / "o")
+
+
 def test_a_million_million_seeds_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert "from 1 to 100000" in refusal(capsys, "render", "crossing_2", "--seeds", 10**12)
 
@@ -146,6 +169,8 @@ ARGUMENTS: list[dict[str, Any]] = [
     {"physics_hz": -240},
     {"physics_hz": 10**9},
     {"physics_hz": "x"},
+    {"physics": np.zeros(2)},
+    {"tracker": LONG},
     {"cameras": 1, "observation": "pixels"},
     {"tracker": []},
     {"task": np.zeros(2)},
@@ -157,8 +182,9 @@ ARGUMENTS: list[dict[str, Any]] = [
 
 @pytest.mark.parametrize("arguments", ARGUMENTS, ids=str)
 def test_wrong_arguments_of_an_environment_are_bad_input(arguments: dict[str, Any]) -> None:
-    with pytest.raises(BadInput):
+    with pytest.raises(BadInput) as caught:
         PeopleBoyEnv(**arguments)
+    assert len(str(caught.value)) < 500
 
 
 def make_env(physics: str, observation: str = "truth") -> PeopleBoyEnv:
@@ -180,7 +206,7 @@ def test_seeds_may_be_numpys_and_huge_actions_are_refused() -> None:
 def test_a_copy_in_an_episode_is_refused_with_bullet_and_right_without() -> None:
     env = make_env("bullet")
     env.reset(seed=0)
-    for duplicate in (copy.deepcopy, pickle.dumps):
+    for duplicate in (copy.copy, copy.deepcopy, pickle.dumps):
         with pytest.raises(BadInput, match="cannot be copied or pickled"):
             duplicate(env)
     env.close()
@@ -193,7 +219,8 @@ def pickled(env: PeopleBoyEnv) -> PeopleBoyEnv:
 
 
 @pytest.mark.parametrize(
-    ("observation", "duplicate"), [("truth", copy.deepcopy), ("truth", pickled), ("tracks", copy.deepcopy)]
+    ("observation", "duplicate"),
+    [("truth", copy.copy), ("truth", copy.deepcopy), ("truth", pickled), ("tracks", copy.deepcopy)],
 )
 def test_a_copy_in_a_kinematic_episode_goes_on_by_itself(
     observation: str, duplicate: Callable[[PeopleBoyEnv], PeopleBoyEnv]
@@ -232,11 +259,24 @@ def test_environments_that_are_dropped_or_fail_to_reset_free_their_worlds(
     assert clients() == before
 
 
-TAMPERED = {
-    "robot.parquet": lambda path: pq.write_table(pq.read_table(path).slice(0, 3), path),
-    "metrics.json": lambda path: path.write_bytes(b"\xff\xfe{}"),
-    "events.jsonl": lambda path: path.write_text('{"frame": 1, "time_s": 0.0, "kind": 3, "who": "x"}\n'),
+EVENT = '{{"frame": 1, "time_s": {}, "kind": {}, "who": "x"}}\n'
+TAMPERED: dict[str, tuple[str, Callable[[Path], object]]] = {
+    "short table": ("robot.parquet", lambda path: pq.write_table(pq.read_table(path).slice(0, 3), path)),
+    "not UTF-8": ("metrics.json", lambda path: path.write_bytes(b"\xff\xfe{}")),
+    "nested metrics": ("metrics.json", lambda path: path.write_text("[" * 100_000)),
+    "kind of event": ("events.jsonl", lambda path: path.write_text(EVENT.format("0.0", "3"))),
+    "time of event": ("events.jsonl", lambda path: path.write_text(EVENT.format('"x"', '"mode"'))),
+    "nested event": ("events.jsonl", lambda path: path.write_text("[" * 100_000)),
+    "nested run": ("run.json", lambda path: path.write_text("[" * 100_000)),
+    "tracker": ("run.json", lambda path: tamper(path, "tracker", [])),
+    "boxes": ("run.json", lambda path: tamper(path, "boxes", {"a": 1})),
 }
+"""What is wrong: the file, and how to make it so."""
+
+
+def tamper(path: Path, key: str, value: Any) -> None:
+    """Change a value in a JSON file."""
+    path.write_text(json.dumps(json.loads(path.read_text()) | {key: value}))
 
 
 def test_a_table_whose_names_are_no_text_is_refused(
@@ -257,11 +297,11 @@ def test_a_recorded_drive_without_a_value_is_refused(tmp_path: Path) -> None:
         read_drive(path)
 
 
-@pytest.mark.parametrize("name", TAMPERED)
+@pytest.mark.parametrize(("name", "change"), TAMPERED.values(), ids=TAMPERED)
 def test_a_run_whose_files_were_changed_is_refused(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    name: str, change: Callable[[Path], object], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     run = toy.write_run(tmp_path / "run")
-    TAMPERED[name](run / name)
+    change(run / name)
     command = "report" if name == "events.jsonl" else "evaluate"
     assert name in refusal(capsys, command, run)

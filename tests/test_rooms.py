@@ -36,6 +36,7 @@ SHARED = {
     "peopleboy.random_streams",
     "peopleboy.registry",
     "peopleboy.settings",
+    "peopleboy.user_files",
     "peopleboy.wording",
 }
 FOLDERS = sorted({str(path.parent.relative_to(ROOT)) for path in FILES.values()})

@@ -1,8 +1,9 @@
 """Kill commands at random moments: `python -m benchmarks.reliability.kills`.
 
-Each command is run once to its end, then killed by SIGKILL after a random share of its processor time. Every
-folder of a run that it leaves must say what it is and open, as far as it has whole frames, and have lost at
-most the frame in flight. The same command must then finish, with the bytes of the run that was never killed.
+Each command is run to its end twice: the first run compiles kernels, the second shows the processor time. It
+is then killed by SIGKILL after a random share of that time. Every folder of a run that it leaves must say
+what it is and open, as far as it has whole frames, and have lost at most the frame in flight. The same
+command must then finish, with the bytes of the run that was never killed.
 """
 
 import os
@@ -11,7 +12,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,7 +26,7 @@ from benchmarks import call
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
 
-SCENE: Final = "single_stationary"
+SCENE: Final = "crossing_2"
 COMMANDS: Final[dict[str, tuple[str, ...]]] = {
     "run": ("run", SCENE, "--tracker", "truth", "--no-recording", "--overwrite"),
     "run --frames": ("run", SCENE, "--tracker", "truth", "--no-recording", "--overwrite", "--frames"),
@@ -41,9 +42,16 @@ COMMANDS: Final[dict[str, tuple[str, ...]]] = {
 _HEAD: Final = "command       kills  cut-off runs opened  most frames lost  faults"
 _ROW: Final = "{:12}  {:5}  {:19}  {:16}  {:6}"
 _STEP_S: Final = 0.05
+_EARLIEST: Final = 0.4  # share of the processor time, most of which imports take
 _BEFORE_FIRST: Final = "before its first frame"
 _VARY: Final = (".rrd", ".log", ".part")  # suffixes of files that are not compared
-_TIMED: Final = ("README.md", "run.json", "index.html", "units.jsonl")  # have times of the clock
+_TIMED: Final = (
+    "README.md",
+    "run.json",
+    "index.html",
+    "units.jsonl",
+    "latency.txt",
+)  # have times of the clock
 
 
 @dataclass(slots=True)
@@ -73,14 +81,37 @@ def start(words: Sequence[str], out: Path) -> "subprocess.Popen[bytes]":
     )
 
 
-def spent_s(group: int) -> float:
-    """Return the processor time [s] of a group of processes, which other load does not change."""
-    total = 0
+def members(group: int) -> Iterator[list[str]]:
+    """Yield the fields of /proc/PID/stat, from the state on, of the living processes of a group."""
     for path in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
             words = path.read_text(encoding="utf-8").rpartition(")")[2].split()
-            total += sum(map(int, words[11:15])) if int(words[2]) == group else 0
-    return total / os.sysconf("SC_CLK_TCK")
+            if int(words[2]) == group and words[0] != "Z":
+                yield words
+
+
+def spent_s(group: int) -> float:
+    """Return the processor time [s] of a group of processes, which other load does not change."""
+    return sum(sum(map(int, words[11:15])) for words in members(group)) / os.sysconf("SC_CLK_TCK")
+
+
+def kill(process: "subprocess.Popen[bytes]") -> None:
+    """Kill a command and its workers, and wait until the last of them has gone."""
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    while any(members(process.pid)):
+        time.sleep(_STEP_S)
+
+
+def measure_s(words: Sequence[str], out: Path) -> float:
+    """Run a command to its end, and return its processor time [s]."""
+    process, takes_s = start(words, out), 0.0
+    while process.poll() is None:
+        takes_s = max(takes_s, spent_s(process.pid))
+        time.sleep(_STEP_S)
+    if process.returncode != 0:
+        raise click.ClickException(f"{words[0]} did not run to its end")
+    return takes_s
 
 
 def last_frame(folder: Path) -> int:
@@ -131,24 +162,18 @@ def kill_often(name: str, kills: int, folder: Path, rng: np.random.Generator) ->
     words = [word.format(run=run) for word in COMMANDS[name]]
     if words != list(COMMANDS[name]) and start(COMMANDS["run --frames"], run).wait() != 0:
         raise click.ClickException("the run with images failed")
-    whole.parent.mkdir(parents=True)
-    process, takes_s = start(words, whole), 0.0
-    while process.poll() is None:
-        takes_s = max(takes_s, spent_s(process.pid))
-        time.sleep(_STEP_S)
-    if process.returncode != 0:
-        result.faults.append("did not run to its end")
-        return result
+    for out in (folder / "first" / "out", whole):
+        out.parent.mkdir(parents=True)
+        takes_s = measure_s(words, out)
     for number in range(kills):
         out = folder / str(number) / "out"
         out.parent.mkdir()
-        process, until_s = start(words, out), rng.uniform(0.2, 1.0) * takes_s
+        process, until_s = start(words, out), rng.uniform(_EARLIEST, 1.0) * takes_s
         while process.poll() is None and spent_s(process.pid) < until_s:
             time.sleep(_STEP_S)
         if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
+            kill(process)
             result.kills += 1
-        process.wait()
         check_left(out, result)
         if start(words, out).wait() != 0:
             result.faults.append(f"kill {number + 1}: did not resume")

@@ -53,8 +53,9 @@ class PlainPath(click.Path):
         """Convert a value to a path."""
         path = Path(str(super().convert(value, param, ctx)))
         try:
+            path.resolve()  # finds links in a ring
             is_other = path.exists() and not (path.is_file() or path.is_dir())
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RuntimeError) as error:
             reason = getattr(error, "strerror", None) or error
             self.fail(f"{reprlib.repr(str(path))}: cannot be a path: {reason}", param, ctx)
         if is_other:

@@ -149,10 +149,11 @@ def show(scenario: str, seed: int | None, out: Path | None, output: Output) -> N
     With --json, the command also prints the resolved scenario, including all values that are sampled from the
     seed.
     """
-    from peopleboy.scenarios.drawing.draw_plan import draw_plan
     from peopleboy.scenarios.files.load import load_scenario
 
     loaded = load_scenario(scenario)
+    from peopleboy.scenarios.drawing.draw_plan import draw_plan  # here, as Matplotlib loads slowly
+
     path = out if out is not None else Path(f"{loaded.name}-plan.png")
     seed = loaded.seed if seed is None else seed
     draw_plan(loaded, seed, path)

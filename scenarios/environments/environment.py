@@ -391,6 +391,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             self._viewer.close()
             self._viewer = None
 
+    def __copy__(self) -> Self:
+        """Copy the environment like `copy.deepcopy`, as two environments cannot share an episode."""
+        return copy.deepcopy(self)
+
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
         """Copy the environment; in an episode, the copy goes on from the same instant.
 

@@ -188,7 +188,7 @@ class Scenario:
         Raises:
             BadInput: the physics are unknown.
         """
-        if physics not in PHYSICS:
+        if not isinstance(physics, str) or physics not in PHYSICS:
             raise BadInput(f"unknown physics {physics!r}; choose from {', '.join(PHYSICS)}")
         return replace(self, spec=replace(self.spec, physics=physics))
 

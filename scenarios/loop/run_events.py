@@ -185,8 +185,10 @@ class LogLine:
         move = line.get("move")
         found = cls(**{**line, "move": None if move is None else Move(**move)})
         words = (found.kind, found.who, found.other, found.why)
-        if not isinstance(found.frame, int) or not all(isinstance(word, str) for word in words):
-            raise TypeError("frame must be a whole number, and kind, who, other and why text")
+        if not isinstance(found.frame, int) or not isinstance(found.time_s, int | float):
+            raise TypeError("frame and time_s must be numbers")
+        if not all(isinstance(word, str) for word in words):
+            raise TypeError("kind, who, other and why must be text")
         return found
 
 

@@ -1,6 +1,5 @@
 """Read a finished run from disk: run.json at once, everything else when it is first needed."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,10 +20,12 @@ from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRUTH
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world_config import WorldConfig
+from peopleboy.user_files import parse_json, read_json, read_text
 
 _FILES = (
     "scenario.yaml", "truth/gt.txt", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",
 )  # fmt: skip
+_TEXTS = ("scenario", "footage", "tracker", "boxes")  # entries of run.json, if given
 
 
 class ImportedTracks(BaseModel):
@@ -130,7 +131,7 @@ class FinishedRun:
             return {}
         path = self.folder / "metrics.json"
         try:
-            data = json.loads(path.read_text(encoding="utf-8"))
+            data = read_json(path)
         except (OSError, ValueError) as error:
             raise BadInput(f"{path}: cannot be read; give the folder of a finished run") from error
         if not isinstance(data, dict):
@@ -144,8 +145,8 @@ class FinishedRun:
         """Contents of events.jsonl."""
         path = self.folder / "events.jsonl"
         try:
-            lines = path.read_text(encoding="utf-8").splitlines()
-            return tuple(LogLine.from_json(json.loads(line)) for line in lines)
+            lines = read_text(path).splitlines()
+            return tuple(LogLine.from_json(parse_json(line)) for line in lines)
         except (OSError, ValueError, TypeError, AttributeError) as error:
             raise BadInput(f"{path}: cannot be read as an event log; run the scenario again") from error
 
@@ -181,7 +182,7 @@ def read_run(folder: Path) -> dict[str, Any]:
     path = folder / "run.json"
     check_there(folder)
     try:
-        about = json.loads(path.read_text(encoding="utf-8"))
+        about = read_json(path)
     except (OSError, ValueError) as error:
         raise BadInput(f"{path}: cannot be read as a run; give the folder of a finished run") from error
     if isinstance(about, dict) and about.get("status") == "failed":
@@ -196,6 +197,9 @@ def read_run(folder: Path) -> dict[str, Any]:
         raise BadInput(f"{path}: this run was cut off before its first frame; run it again")
     if not isinstance(about.get("frames"), int):
         raise BadInput(f"{path}: frames: must be a whole number, got {about.get('frames')!r}; run it again")
+    for key in _TEXTS:
+        if not isinstance(about.get(key, ""), str | None):
+            raise BadInput(f"{path}: {key}: must be text, got {about[key]!r}; run it again")
     return about
 
 

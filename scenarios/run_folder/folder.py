@@ -50,6 +50,7 @@ from peopleboy.sim.truth.truth import Backgrounds
 from peopleboy.tracker.evaluation.mot_files import track_line, truth_line
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import confirmed
+from peopleboy.user_files import parse_json
 
 _VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet", "scipy")
 
@@ -275,7 +276,7 @@ def _trim_texts(folder: Path, frames: int) -> None:
         write_aside(text, "".join(kept).encode())
     events = folder / "events.jsonl"
     if events.is_file():
-        kept = (line for line in _whole_lines(events) if json.loads(line)["frame"] <= frames)
+        kept = (line for line in _whole_lines(events) if parse_json(line)["frame"] <= frames)
         write_aside(events, "".join(kept).encode())
 
 

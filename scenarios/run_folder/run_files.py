@@ -135,7 +135,7 @@ def check_robot(folder: Path, robot: pa.Table, frames: int) -> None:
     Raises:
         BadInput: a frame is missing or superfluous.
     """
-    if robot["frame"].to_pylist() != list(range(1, frames + 1)):
+    if robot.num_rows != frames or robot["frame"].to_pylist() != list(range(1, frames + 1)):
         raise BadInput(
             f"{folder / 'robot.parquet'}: must have a row for each of the {frames} frames, "
             f"got {robot.num_rows}; {_AGAIN}"

@@ -26,6 +26,7 @@ from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
+from peopleboy.user_files import read_json
 
 GROUPS = ("following", "corridor", "comfort")  # groups of metrics.json on how the robot drove
 
@@ -122,7 +123,7 @@ def intervals(runs: Sequence[Figures], rng: np.random.Generator) -> dict[str, In
 
 def figures_of(folder: Path) -> dict[str, float]:
     """Read the metrics of how the robot drove from a run's folder; booleans become 1 and 0."""
-    metrics = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
+    metrics = read_json(folder / "metrics.json")
     groups = [metrics[name] for name in GROUPS if name in metrics]
     return {
         name: math.nan if value is None else float(value) for group in groups for name, value in group.items()

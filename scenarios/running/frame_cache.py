@@ -35,6 +35,7 @@ from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import Frame, Odometry
 from peopleboy.tracker.track import Track
+from peopleboy.user_files import read_json
 
 MOTION = ("advance_m", "aside_m", "turn_rad")
 SEEN = ("thermal", "colour")  # cameras whose images are cached
@@ -123,7 +124,7 @@ def open_film(folder: Path) -> Film:
         BadInput: the folder does not contain one.
     """
     try:
-        about = json.loads((folder / "about.json").read_text(encoding="utf-8"))
+        about = read_json(folder / "about.json")
     except (OSError, ValueError) as error:
         raise BadInput(f"{folder}: contains no complete frames") from error
     shapes = {camera: tuple(shape) for camera, shape in about.pop("shapes").items()}

@@ -1,6 +1,5 @@
 """Group scored runs by tracker, check that they show the same scenes, and compare trackers pair by pair."""
 
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from peopleboy.scenarios.scores.evaluate_runs import BoxReference, ScoreOptions,
 from peopleboy.scenarios.scores.summaries import summarise
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, Figure, to_json
+from peopleboy.user_files import read_json
 
 Scene = tuple[str, int]
 """Scenario, or footage, and seed."""
@@ -255,14 +255,17 @@ def _figures(folder: Path) -> list[float] | None:
     if not path.is_file():
         return None
     try:
-        group = json.loads(path.read_text(encoding="utf-8")).get("comfort")
+        group = read_json(path).get("comfort")
     except (OSError, ValueError, AttributeError) as error:
         raise BadInput(f"{path}: cannot be read as metrics; run the scenario again") from error
     if group is None:
         return None
     if not isinstance(group, dict) or set(group) != set(_NAMES):
         raise BadInput(f"{path}: comfort: not the metrics of this version; run the scenario again")
-    return [math.nan if group[name] is None else float(group[name]) for name in _NAMES]
+    try:
+        return [math.nan if group[name] is None else float(group[name]) for name in _NAMES]
+    except (TypeError, ValueError, OverflowError) as error:
+        raise BadInput(f"{path}: comfort: must be numbers; run the scenario again") from error
 
 
 def _mean(runs: list[list[float]]) -> ComfortScore:

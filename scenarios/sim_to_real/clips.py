@@ -1,6 +1,5 @@
 """Read thermal clips with boxes of people, rendered or real, and cut patches from them."""
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from peopleboy.tracker.footage.footage_truth import NAMES, load_truth
 from peopleboy.tracker.footage.image_sequences import INNER, PictureFolder
 from peopleboy.tracker.footage.picture_names import pictures_in
 from peopleboy.tracker.footage.read_picture import read_picture, size_of
+from peopleboy.user_files import read_json
 
 Grey = NDArray[np.uint8]
 
@@ -125,7 +125,7 @@ def _clip(folder: Path) -> Clip:
 def _scene(folder: Path) -> str:
     """Return the scene of a clip: the scenario for a run, whatever its seed, else the folder."""
     try:
-        return str(json.loads((folder / "run.json").read_text(encoding="utf-8"))["scenario"])
+        return str(read_json(folder / "run.json")["scenario"])
     except (OSError, ValueError, KeyError):
         return str(folder.resolve())
 

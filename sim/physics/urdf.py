@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
+from peopleboy.user_files import read_text
 
 MISSING = "PyBullet is not installed: there are wheels for Python 3.11 to 3.13 on Linux, macOS and Windows"
 """Message if PyBullet or its models are needed but not installed."""
@@ -153,7 +154,7 @@ def parse_urdf(path: Path) -> ElementTree.Element:
     """
     try:
         # A declaration may claim an encoding that is not the file's.
-        return ElementTree.fromstring(re.sub(r"<\?xml.*?\?>", "", path.read_text("utf-8"), count=1))
+        return ElementTree.fromstring(re.sub(r"<\?xml.*?\?>", "", read_text(path), count=1))
     except (OSError, UnicodeDecodeError, ElementTree.ParseError) as error:
         raise BadInput(f"{path} cannot be read as a URDF: {error}") from error
 

@@ -3,7 +3,9 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-_LONGEST = 40  # letters shown of a key
+_LONGEST_KEY = 40  # letters shown of a key
+_LONGEST = 500  # letters of a message
+_START, _END = 300, 150  # letters shown of a longer message
 
 Key = tuple[str | int, ...]
 """Steps from the top of a file to a value in it, such as ("people", 0, "path", 1, "at_m")."""
@@ -27,7 +29,7 @@ class BadInput(ValueError):  # noqa: N818
 
     def __str__(self) -> str:
         """Return one line with file, key and reason."""
-        return ": ".join(part for part in (self.file, dotted(self.key), self.reason) if part)
+        return shortened(": ".join(part for part in (self.file, dotted(self.key), self.reason) if part))
 
     def within(self, *steps: str | int, file: str = "") -> "BadInput":
         """Return the same error with a longer key, whose first steps are these.
@@ -41,9 +43,15 @@ class BadInput(ValueError):  # noqa: N818
 
 def dotted(key: Key) -> str:
     """Write a key as people[0].path[1].at_m."""
-    names = (step if len(str(step)) <= _LONGEST else f"{str(step)[:_LONGEST]}..." for step in key)
+    names = (step if len(str(step)) <= _LONGEST_KEY else f"{str(step)[:_LONGEST_KEY]}..." for step in key)
     text = "".join(f"[{name}]" if isinstance(name, int) else f".{name}" for name in names)
     return text.removeprefix(".")
+
+
+def shortened(message: str) -> str:
+    """Return a message as one line, a long one without its middle: its end says what would be right."""
+    line = " ".join(message.split("\n"))
+    return line if len(line) < _LONGEST else f"{line[:_START]} ... {line[-_END:]}"
 
 
 @contextmanager

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import Floats
+from peopleboy.user_files import read_text
 
 LATENCY_FILE: Final = "latency.txt"
 WARM_UP: Final = 15  # updates excluded at the start of a sequence, in which kernels are compiled
@@ -92,7 +93,7 @@ def read_latency(folder: Path) -> Latency:
     if not path.is_file():
         return UNTIMED
     try:
-        times_ms = np.array(path.read_text(encoding="utf-8").split(), dtype=np.float64)
+        times_ms = np.array(read_text(path).split(), dtype=np.float64)
     except ValueError as error:
         raise BadInput(f"{path}: must have one time [ms] a line; run the scenario again") from error
     return Latency(times_ms[WARM_UP:])

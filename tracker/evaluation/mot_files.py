@@ -39,6 +39,7 @@ from peopleboy.tracker.evaluation.protocols import (
     apply_protocol,
 )
 from peopleboy.tracker.evaluation.sequence import Ints, Rows, TrackBoxes, TrueBoxes, find_fault
+from peopleboy.user_files import read_text
 
 TRUTH_COLUMNS = "frame, id, left, top, width, height, counted, class, visible fraction"
 TRACKS_COLUMNS = "frame, id, left, top, width, height, confidence, ..."
@@ -268,7 +269,7 @@ def _read_lines(path: Path) -> list[str]:
         BadInput: it cannot be read.
     """
     try:
-        lines = path.read_text(encoding="utf-8-sig").split("\n")
+        lines = read_text(path, "utf-8-sig").split("\n")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "not a text file"
         raise BadInput(f"{path}: cannot be read as MOTChallenge text: {reason}") from error

@@ -1,6 +1,5 @@
 """Ground truth of recorded footage: VOT, OTB, MOTChallenge, KITTI and VisDrone."""
 
-import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,6 +29,7 @@ from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.image_sequences import beside
 from peopleboy.tracker.footage.sequence_info import NAME as INFO
 from peopleboy.tracker.footage.sequence_info import sequence_name
+from peopleboy.user_files import read_json, read_text
 
 # Implausible truth causes a note rather than an error: it may be correct.
 
@@ -240,7 +240,7 @@ def load_truth(
     if not path.exists():
         raise BadInput(f"{path}: no such file")
     try:
-        lines = path.read_text(encoding="utf-8-sig").split("\n")
+        lines = read_text(path, "utf-8-sig").split("\n")
     except (OSError, UnicodeDecodeError) as error:
         raise BadInput(f"{path}: cannot be read as truth; give a text file of boxes") from error
     while lines and not lines[-1].strip():
@@ -292,7 +292,7 @@ def _protocol_of_run(folder: Path) -> Protocol | None:
     if (folder / _EXACT).is_file():
         return Protocol.PEOPLEBOY
     try:
-        about = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+        about = read_json(folder / "run.json")
         return Protocol(about.get("protocol", Protocol.PEOPLEBOY))
     except (OSError, ValueError, AttributeError):
         return None

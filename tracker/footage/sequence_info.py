@@ -10,6 +10,7 @@ from typing import Final
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.footage.image_sequences import beside
 from peopleboy.tracker.frame import Odometry
+from peopleboy.user_files import read_text
 
 NAME: Final = "seqinfo.ini"
 RATES_HZ: Final = (0.1, 1000.0)
@@ -50,13 +51,13 @@ def sequence_name(path: Path) -> str:
     """Return the sequence's name; empty if the file does not have it, or cannot be read."""
     try:
         return _parse(path).get("Sequence", "name", fallback="")
-    except (OSError, UnicodeDecodeError, ConfigError):
+    except (OSError, UnicodeDecodeError, ConfigError, BadInput):
         return ""
 
 
 def _parse(path: Path) -> ConfigParser:
     parser = ConfigParser(interpolation=None)
-    parser.read_string(path.read_text(encoding="utf-8-sig"))
+    parser.read_string(read_text(path, "utf-8-sig"))
     return parser
 
 
@@ -78,8 +79,8 @@ def load_odometry(path: Path, pictures: int) -> list[Odometry]:
         BadInput: the file cannot be read, has other columns or another length, or a number is not finite.
     """
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            head, *rows = [row for row in csv.reader(file) if row] or [[]]
+        lines = read_text(path, "utf-8-sig").split("\n")
+        head, *rows = [row for row in csv.reader(lines) if row] or [[]]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise BadInput(f"{path}: cannot be read as odometry; give a CSV file") from error
     if tuple(name.strip() for name in head) != COLUMNS:

@@ -6,13 +6,16 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from peopleboy import sim, tracker
 from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.user_files import parse_json
 
 Result = dict[str, Any]
+
+_NEEDED: Final = {"key", "code", "result"}
 
 
 class Store(Mapping[str, Result]):
@@ -73,10 +76,10 @@ class Store(Mapping[str, Result]):
 
     def _take(self, line: str) -> None:
         try:
-            entry = json.loads(line)
+            entry = parse_json(line)
         except ValueError:
             return
-        if entry["code"] == self._code:
+        if isinstance(entry, dict) and entry.keys() >= _NEEDED and entry["code"] == self._code:
             self._results[entry["key"]] = entry["result"]
             self._spent_s[entry["key"]] = entry.get("spent_s", 0.0)
 

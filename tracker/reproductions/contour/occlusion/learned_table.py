@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.reproductions.contour.occlusion.pair_features import FEATURES
+from peopleboy.user_files import read_text
 
 TABLES = Path(__file__).parent / "tables"
 """Folder of the shipped tables: NAME.yaml for the tracker of that name."""
@@ -98,7 +99,7 @@ class LearnedTable:
             BadInput: the file is missing or is not such a table.
         """
         try:
-            data = yaml.safe_load(path.read_text(encoding="utf-8"))
+            data = yaml.safe_load(read_text(path))
         except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
             raise BadInput(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
         try:
