@@ -10,7 +10,6 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.elementary import exponential, exponentials
-from peopleboy.tracker.normal_draws import source_of, standard_normals
 from peopleboy.tracker.reproductions.contour.contour_config import (
     REFERENCE_HEIGHT_PX,
     FilterConfig,
@@ -18,7 +17,7 @@ from peopleboy.tracker.reproductions.contour.contour_config import (
     MotionConfig,
     TrackerConfig,
 )
-from peopleboy.tracker.reproductions.contour.weights import ranked, scale_to_one, systematic_rows
+from peopleboy.tracker.reproductions.contour.weights import scale_to_one, systematic_rows
 
 X: Final = 0
 Y: Final = 1
@@ -81,7 +80,7 @@ def draw_prior(
     height, width = shape
     limits, is_log_uniform = filter_config.limits, filter_config.log_uniform_h
     chance = rng.random((count, 5), dtype=np.float32)
-    velocity = standard_normals(*source_of(rng), 4 * count).reshape(-1, 4)
+    velocity = rng.standard_normal((count, 4), dtype=np.float32)
     noise = (motion.noise_x, motion.noise_y, motion.noise_w, motion.noise_h)
     amplitude = np.array(noise if motion.fresh_speed is None else motion.fresh_speed, dtype=np.float32)
     speed = height / REFERENCE_HEIGHT_PX * amplitude
@@ -239,10 +238,13 @@ def predict(
     """
     amplitude = noise_per_step(dt_s, size, config)
     memory = _scaled(1.0, (config.place_memory, config.place_memory, config.size_memory, config.size_memory))
-    apart = round(1 / resized_share) if resized_share > 0 else 0
-    moved: Floats = _moved(
-        state, rows, *source_of(rng), amplitude, memory, dt_s, size * config.noise_by_height, turn, apart
+    noise = rng.standard_normal((len(rows), 5), dtype=np.float32)
+    moved: Floats = _predicted(
+        state, rows, noise, amplitude, memory, dt_s, size * config.noise_by_height, turn
     )
+    if resized_share > 0:
+        apart = round(1 / resized_share)
+        _resize(moved, apart, rng.standard_normal(-(-len(moved) // apart), dtype=np.float32))
     return moved
 
 
@@ -336,7 +338,7 @@ def estimated(
     share, reach = choice
     others = len(weight) - math.ceil(share * len(weight))
     # Weight of the last selected sample: ties are included, so that the sorting order does not matter.
-    least = ranked(weight, others)
+    least = np.partition(weight, others)[others]
     rows = _rows_near_best(state, weight, least, np.float32(reach * reach))
     core, heavy = np.empty((len(rows), STATE_SIZE), np.float32), np.empty(len(rows), np.float32)
     for i in range(np.uint64(len(rows))):
@@ -350,27 +352,6 @@ def estimated(
         confidence += heavy[i] * np.float64(sure)
     mean = _mean(core, heavy)
     return core, heavy, mean, confidence, _spread(core, heavy, mean)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _moved(
-    state: Floats,
-    rows: NDArray[np.int64],
-    function: int,
-    source: int,
-    amplitude: Floats,
-    memory: Floats,
-    dt_s: float,
-    by_height: float,
-    turn: CameraTurn,
-    apart: int,
-) -> Floats:
-    """Predict samples in some rows, and resize every n-th, 0 for none; see `source_of`."""
-    noise = standard_normals(function, source, 5 * len(rows)).reshape(-1, 5)
-    moved = _predicted(state, rows, noise, amplitude, memory, dt_s, by_height, turn)
-    if apart > 0:
-        _resize(moved, apart, standard_normals(function, source, -(-len(moved) // apart)))
-    return moved
 
 
 @njit(cache=True, nogil=True)

@@ -13,7 +13,6 @@ Floats = NDArray[np.float32]
 NOTHING: Final[Floats] = np.empty(0, dtype=np.float32)
 """Placeholder for a factor, or a likeness, that is not used."""
 _LEAST: Final = np.float32(1e-30)  # least likeness whose logarithm is taken
-_FIRST_BITS, _NEXT_BITS = 11, 10  # of 31: the sign bit is 0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -89,35 +88,3 @@ def systematic_rows(weight: Floats, count: int, offset: float) -> NDArray[np.int
             cumulated += weight[row]
         rows[j] = row
     return rows
-
-
-@njit(cache=True, nogil=True)
-def ranked(weight: Floats, rank: int) -> np.float32:
-    """Return the weight (N,) that a given number of others do not exceed; weights are non-negative.
-
-    Such floats are ordered like their bits: the first 11 bits are counted, then the next 10. Comparisons
-    would cause unpredictable branches.
-    """
-    some, place = weight.view(np.uint32), np.int64(rank)
-    shift, bits = np.uint32(20), np.uint32(_FIRST_BITS)
-    while True:
-        counts = np.zeros(1 << bits, dtype=np.int32)
-        digits = np.uint32((1 << bits) - 1)
-        for i in range(np.uint64(len(some))):
-            counts[(some[i] >> shift) & digits] += np.int32(1)
-        digit = np.uint32(0)
-        while counts[digit] <= place:
-            place -= counts[digit]
-            digit += np.uint32(1)
-        if shift == 0:
-            break
-        left, count = np.empty(len(some), dtype=np.uint32), np.uint64(0)
-        for i in range(np.uint64(len(some))):
-            left[count] = some[i]
-            count += np.uint64(((some[i] >> shift) & digits) == digit)
-        some, shift, bits = left[:count], shift - np.uint32(10), np.uint32(_NEXT_BITS)
-    for i in range(np.uint64(len(some))):
-        if (some[i] & digits) == digit:
-            found: np.float32 = some[i : i + np.uint64(1)].view(np.float32)[0]
-            return found
-    return np.float32(0.0)

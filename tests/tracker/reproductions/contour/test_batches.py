@@ -11,7 +11,6 @@ from peopleboy.tracker.reproductions.contour.colour_config import (
     ColourDescriptorConfig,
 )
 from peopleboy.tracker.reproductions.contour.contour_config import AppearanceConfig
-from peopleboy.tracker.reproductions.contour.measurement.clutter_kernels import twin_of
 from peopleboy.tracker.reproductions.contour.measurement.likelihood import (
     COVERED,
     ContourModel,
@@ -36,13 +35,6 @@ def brood(parents=60, children=4):
     state[:, 4] = RNG.normal(0, 5, len(state))
     state[::5, 2:4] *= RNG.uniform(0.7, 1.4, len(state[::5]))[:, None]
     return state
-
-
-def test_most_samples_have_a_twin_among_the_two_before() -> None:
-    state = brood()
-    found = [twin_of(state, i) for i in range(len(state))]
-    assert all(row < 0 or np.array_equal(state[row, :4], state[i, :4]) for i, row in enumerate(found))
-    assert sum(row >= 0 for row in found) > len(state) / 2
 
 
 @pytest.mark.parametrize("covered", [None, 0.4])

@@ -13,7 +13,7 @@ from peopleboy.tracker.reproductions.contour.particles import (
     resample,
     uncertainty_px2,
 )
-from peopleboy.tracker.reproductions.contour.weights import ranked, systematic_rows
+from peopleboy.tracker.reproductions.contour.weights import systematic_rows
 
 weights = arrays(np.float32, st.integers(1, 60), elements=st.floats(0, 1, width=32)).filter(
     lambda w: w.sum() > 1e-3
@@ -90,13 +90,3 @@ def test_the_core_leaves_out_particles_on_another_person():
     core, _, mean, *_ = estimated(state, normalised(weight), weight, np.ones(20, bool), (1.0, 0.7))
     assert len(core) == 10
     assert mean[0] == pytest.approx(100)
-
-
-@settings(deadline=None)
-@given(
-    weight=arrays(np.float32, st.integers(1, 300), elements=st.floats(0, 2.0**100, width=32)),
-    share=st.floats(0, 1),
-)
-def test_a_weight_by_its_rank_is_that_of_the_sorted_ones(weight, share):
-    rank = min(int(share * len(weight)), len(weight) - 1)
-    assert ranked(weight, rank) == np.sort(weight)[rank]

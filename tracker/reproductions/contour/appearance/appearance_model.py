@@ -2,15 +2,13 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Final
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.elementary import exponential
-from peopleboy.tracker.reproductions.contour.appearance.colour_view import LEAST_SEEN, ColourView, PowerSums
-from peopleboy.tracker.reproductions.contour.appearance.part_means import write_part_means
+from peopleboy.tracker.reproductions.contour.appearance.colour_view import ColourView, PowerSums
 from peopleboy.tracker.reproductions.contour.appearance.regions import PARTS, alignment, part_rectangle
 from peopleboy.tracker.reproductions.contour.box_interaction import Regions
 from peopleboy.tracker.reproductions.contour.colour_config import SAME_VIEW, ColourDescriptorConfig
@@ -22,7 +20,6 @@ from peopleboy.tracker.reproductions.contour.particles import D, Floats, H, W, X
 COLOUR_SPREAD = (0.06, 0.02, 0.035)
 BRIGHTNESS = 80.0  # mean of the colour image [grey] to which all are scaled
 DARKEST = 12.0  # mean below which colours are noise
-_LANES: Final = 32  # number of people compared in parallel
 HIDDEN_PART = 0.3  # covered share of a part from which its colour is ignored
 
 
@@ -54,19 +51,12 @@ class AppearanceView:
 
     def describe(self, state: Floats) -> Floats:
         """Describe people (N, 9) by the colours and the grey of each part, (N, 12); NaN outside."""
-        means = np.empty((len(state), PARTS, 4), dtype=np.float32)
-        if self.colour is None:
-            means[..., :3] = np.nan
-        else:
-            self._write(means, 0, state, self.colour)
-        self._write(means, 3, state, self.thermal)
+        means = np.full((len(state), PARTS, 4), np.nan, dtype=np.float32)
+        if self.colour is not None:
+            means[..., :3] = self.colour.means(state)
+        means[..., 3:] = self.thermal.means(state)
+        means *= self.scale
         return means.reshape(len(state), -1)
-
-    def _write(self, means: Floats, column: int, state: Floats, view: ColourView) -> None:
-        sums = view.sums or PowerSums.build(view.picture, 1)
-        _, _, channels, degree = sums.integral.shape
-        firsts = tuple(range(0, channels * degree, degree))  # a constant for the compiler
-        write_part_means(means, column, state, view.alignment, sums.integral, firsts, self.scale, LEAST_SEEN)
 
 
 def visible(features: Floats, state: Floats, hiding: Regions) -> Floats:
@@ -207,22 +197,13 @@ def _mean_of_known(recent: Floats) -> Floats:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _squared_distances(features: Floats, mean: Floats) -> Floats:
-    """Compare as `squared_distances` does, vectorised and without branches."""
-    result, total = np.empty(len(features), dtype=np.float32), np.empty(_LANES)
-    seen, lanes = np.empty(_LANES), np.empty((len(mean), _LANES), dtype=np.float32)
-    for start in range(0, len(features), _LANES):
-        count = min(_LANES, len(features) - start)
-        for k in range(np.uint64(count)):
-            for j in range(np.uint64(len(mean))):
-                lanes[j, k] = features[np.uint64(start) + k, j]
-        total[:], seen[:] = 0.0, 0.0
-        for j in range(np.uint64(len(mean))):
-            for k in range(np.uint64(count)):
-                away = lanes[j, k] - mean[j]
-                is_known = away == away
-                total[k] += away * away if is_known else np.float32(0)
-                seen[k] += 1.0 if is_known else 0.0
-        for k in range(np.uint64(count)):
-            # 0 / 0 is NaN where nothing is visible.
-            result[np.uint64(start) + k] = total[k] * len(mean) / seen[k]
+    result = np.empty(len(features), dtype=np.float32)
+    for i in range(len(features)):
+        total, seen = 0.0, 0.0
+        for j in range(len(mean)):
+            away = features[i, j] - mean[j]
+            if not np.isnan(away):
+                total += away * away
+                seen += 1.0
+        result[i] = total * len(mean) / seen  # 0 / 0 is NaN where nothing is visible
     return result

@@ -9,8 +9,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.reproductions.contour.appearance.part_means import WHITE
+from peopleboy.tracker.reproductions.contour.appearance.colour_histograms import BINS, cumulative_histograms
 from peopleboy.tracker.reproductions.contour.appearance.regions import (
+    PARTS,
     Bounds,
     aligned,
     alignment,
@@ -21,72 +22,10 @@ from peopleboy.tracker.reproductions.contour.appearance.regions import (
 from peopleboy.tracker.reproductions.contour.colour_config import REPRESENTATIONS, ColourDescriptorConfig
 from peopleboy.tracker.reproductions.contour.particles import Floats, H
 
-# Cumulative colour histograms of regions: the slow method, for comparison.
-
-BINS = 20  # of equal width
-
-
-def cumulative_histograms(
-    picture: NDArray[np.uint8], bounds: Bounds, holes: Bounds, bins: int, least_seen: float
-) -> Floats:
-    """Describe M regions by the share of pixels at or below each bin, counted pixel by pixel.
-
-    Args:
-        picture: (H, W, C).
-        bounds: (M, 4) first column and row, and those after the last.
-        holes: (M, 4) rectangles whose pixels are excluded.
-        bins: number of bins of equal width.
-        least_seen: least share of the region's area inside the picture; otherwise the region is NaN.
-
-    Returns:
-        (M, C, bins) float32; the last bin is 1.
-
-    Source: thesis, equation 6.18.
-    """
-    histograms: Floats = _cumulative_histograms(picture, bounds, holes, bins, least_seen)
-    return histograms
-
-
-@njit(cache=True, nogil=True)
-def _cumulative_histograms(
-    picture: NDArray[np.uint8], bounds: Bounds, holes: Bounds, bins: int, least_seen: float
-) -> Floats:
-    height, width, channels = picture.shape
-    result = np.empty((len(bounds), channels, bins), dtype=np.float32)
-    for i in range(len(bounds)):
-        left, top, right, bottom = bounds[i]
-        count = np.zeros((channels, bins), dtype=np.int64)
-        area = max(right - left, 0) * max(bottom - top, 0) - _shared_area(bounds[i], holes[i])
-        for v in range(max(top, 0), min(bottom, height)):
-            for u in range(max(left, 0), min(right, width)):
-                if _is_within(u, v, holes[i]):
-                    continue
-                for c in range(channels):
-                    count[c, int(picture[v, u, c]) * bins // 256] += 1
-        pixels = count[0].sum()
-        if pixels == 0 or pixels < least_seen * area:
-            result[i] = np.nan
-            continue
-        for c in range(channels):
-            result[i, c] = np.cumsum(count[c]) / pixels
-    return result
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _is_within(u: int, v: int, bounds: Bounds) -> bool:
-    return bool(bounds[0] <= u < bounds[2] and bounds[1] <= v < bounds[3])
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _shared_area(one: Bounds, other: Bounds) -> int:
-    wide = min(one[2], other[2]) - max(one[0], other[0])
-    tall = min(one[3], other[3]) - max(one[1], other[1])
-    return int(max(wide, 0) * max(tall, 0))
-
-
 Integers = NDArray[np.int64]
 
 LEAST_SEEN = 0.5  # least share of a part inside the colour image; otherwise the part is invisible
+WHITE = 255.0
 _FULL_TURN = 256
 # With this many pixels of 255, n S2 and S1^2 still fit an int64.
 _MOST_PIXELS = 1 << 23
@@ -185,6 +124,15 @@ class ColourView:
             (N, F) float32, ordered by part, channel, and moment or bin: F = 27 for three moments in RGB.
         """
         return self.describe_rectangles(part_rectangles(state), state[:, H])
+
+    def means(self, state: Floats) -> Floats:
+        """Return the mean (N, 3, C), 0..1, of each channel over the parts of people (N, 9); NaN outside."""
+        sums = self.sums or PowerSums.build(self.picture, 1)
+        parts = sums.over(self._bounds(part_rectangles(state), state[:, H]))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mean = parts.power[:, :, 0] * (1.0 / parts.pixels)[:, None] / WHITE
+        mean[parts.pixels < np.maximum(LEAST_SEEN * parts.area, 1)] = np.nan
+        return mean.astype(np.float32).reshape(len(state), PARTS, -1)
 
     def describe_rectangles(self, rectangles: Floats, height: Floats, holes: Floats | None = None) -> Floats:
         """Describe regions of people.

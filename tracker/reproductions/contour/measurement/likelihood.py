@@ -18,7 +18,6 @@ from peopleboy.tracker.reproductions.contour.contour_config import (
     ContourConfig,
     LikelihoodConfig,
 )
-from peopleboy.tracker.reproductions.contour.measurement.clutter_kernels import differences_in, least_above
 from peopleboy.tracker.reproductions.contour.measurement.contour import (
     FEET,
     GREYS,
@@ -146,7 +145,11 @@ def clutter_of(image: NDArray[np.uint8]) -> float:
     Noise, texture and a high gain increase it; people, lamps and windows cover too little of an image.
     """
     apart = max(round(_APART_PX * image.shape[0] / REFERENCE_HEIGHT_PX), 1)
-    return float(least_above(differences_in(image, apart, _STRIDE), _SHARE))
+    rows, columns = image[::_STRIDE], image[:, ::_STRIDE]
+    pairs = (rows[:, apart:], rows[:, :-apart]), (columns[apart:], columns[:-apart])
+    apart_by = np.concatenate([(np.maximum(*pair) - np.minimum(*pair)).ravel() for pair in pairs])
+    counts = cv2.calcHist([apart_by], [0], None, [GREYS], [0, GREYS]).cumsum(dtype=np.float64)
+    return float(np.searchsorted(counts, _SHARE * apart_by.size))
 
 
 def settled_clutter(before: float | None, now: float, dt_s: float) -> float:

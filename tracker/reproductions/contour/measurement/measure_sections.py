@@ -7,8 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.elementary import exponential
-from peopleboy.tracker.reproductions.contour.measurement.clutter_kernels import bodies_of
-from peopleboy.tracker.reproductions.contour.measurement.contour import FEET, GREYS, SECTIONS, SHOULDER_LEFT
+from peopleboy.tracker.reproductions.contour.measurement.contour import FEET, GREYS, SECTIONS
 from peopleboy.tracker.reproductions.contour.particles import D, Floats, H, W, X, Y
 
 ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # index of points outside the image
@@ -33,8 +32,6 @@ def measure_sections(
 
     The latter is (N, 8), or (0, 8) if points always keep their weight.
 
-    Sections below the head of samples that differ in d alone are measured once, as d moves nothing else.
-
     Args:
         image: (H, W) grey.
         state: (N, 9) samples.
@@ -54,55 +51,42 @@ def measure_sections(
     total, left = np.empty(LANES, dtype=np.float32), np.empty(LANES, dtype=np.float32)
     lowest, lane = np.empty(LANES, dtype=np.int32), np.empty(LANES, dtype=np.uint64)
     grey, counts = image.reshape(-1), response.reshape(-1)
-    twin, bodies = bodies_of(state)
-    for begin, end, rows in ((0, SHOULDER_LEFT, np.arange(len(state))), (SHOULDER_LEFT, SECTIONS, bodies)):
-        for start in range(0, len(rows), LANES):
-            _load(lanes, state, rows, start)
-            _locate(at, lowest, lanes, mix, same, first[begin], first[end], image.shape)
-            count = min(LANES, len(rows) - start)
-            special = lane[: _find_special(lane, lowest[:count], covered_grey >= 0)]
-            for j in range(begin, end):
-                section = j, first[j], first[j + 1]
-                if len(special) < count:
-                    _add_up_in_view(total, at, same, grey, counts, section)
-                if len(special) > 0:
-                    _add_up(total, left, special, at, same, grey, counts, section, covered_grey, missing)
-                    _put(known, left, rows, start, j)
-                if j == FEET and feet_gain > 0:
-                    for k in range(LANES):
-                        total[k] = min(np.float32(1), np.float32(feet_gain) * total[k])
-                _put(result, total, rows, start, j)
-    _copy_to_twins(result, twin)
-    _copy_to_twins(known, twin)
+    for start in range(0, len(state), LANES):
+        _load(lanes, state, start)
+        _locate(at, lowest, lanes, mix, same, image.shape)
+        count = min(LANES, len(state) - start)
+        special = lane[: _find_special(lane, lowest[:count], covered_grey >= 0)]
+        for j in range(SECTIONS):
+            section = j, first[j], first[j + 1]
+            if len(special) < count:
+                _add_up_in_view(total, at, same, grey, counts, section)
+            if len(special) > 0:
+                _add_up(total, left, special, at, same, grey, counts, section, covered_grey, missing)
+                _put(known, left, start, j)
+            if j == FEET and feet_gain > 0:
+                for k in range(LANES):
+                    total[k] = min(np.float32(1), np.float32(feet_gain) * total[k])
+            _put(result, total, start, j)
     return result, known
 
 
 @njit(cache=True, nogil=True)
-def _put(table: Floats, values: Floats, rows: NDArray[np.int64], start: int, j: int) -> None:
+def _put(table: Floats, values: Floats, start: int, j: int) -> None:
     """Write values (K,) into a column of a table (N, 8), in the rows from `start` on, unless it is empty."""
     if len(table) > 0:
-        for k in range(np.uint64(min(LANES, len(rows) - start))):
-            table[np.uint64(rows[np.uint64(start) + k]), np.uint64(j)] = values[k]
+        for k in range(np.uint64(min(LANES, len(table) - start))):
+            table[np.uint64(start) + k, np.uint64(j)] = values[k]
 
 
 @njit(cache=True, nogil=True)
-def _copy_to_twins(table: Floats, twin: NDArray[np.int64]) -> None:
-    """Copy the sections below the head in a table (N, 8) to samples with a twin (N,)."""
-    for i in range(np.uint64(len(table))):
-        if twin[i] >= 0:
-            for j in range(np.uint64(SHOULDER_LEFT), np.uint64(SECTIONS)):
-                table[i, j] = table[np.uint64(twin[i]), j]
-
-
-@njit(cache=True, nogil=True)
-def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64], start: int) -> None:
-    """Write x, y, d, w, h and x + d of samples in columns, for some rows from `start` on.
+def _load(lanes: Floats, state: Floats, start: int) -> None:
+    """Write x, y, d, w, h and x + d of samples in columns, from row `start` on.
 
     The last one is repeated until all lanes are full. Coordinates are shifted by half a pixel.
     """
     half = np.float32(0.5)
     for k in range(LANES):
-        i = np.uint64(rows[np.uint64(min(start + k, len(rows) - 1))])
+        i = np.uint64(min(start + k, len(state) - 1))
         lanes[0, k], lanes[1, k] = state[i, X] + half, state[i, Y] + half
         lanes[2, k], lanes[3, k], lanes[4, k] = state[i, D], state[i, W], state[i, H]
         lanes[5, k] = lanes[0, k] + lanes[2, k]
@@ -115,39 +99,36 @@ def _locate(
     lanes: Floats,
     mix: Floats,
     same: NDArray[np.int64],
-    begin: int,
-    end: int,
     shape: tuple[int, int],
 ) -> None:
-    """Write the pixels (2 P, K) of some pairs of points of the samples, vectorised and without branches.
+    """Write the pixels (2 P, K) of the pairs of points of the samples, vectorised and without branches.
 
     Rows of points that coincide with an earlier one are skipped. The minimum (K,) of a sample's pixels is
     negative if not all of them are in the image.
     """
     columns, right, bottom = np.int32(shape[1]), np.float32(shape[1]), np.float32(shape[0])
-    pairs, zero = len(at) // 2, np.float32(0)
+    zero = np.float32(0)
     lowest[:] = 0
-    for side in (0, pairs):
-        # Unsigned, as numba would otherwise check for negative indices.
-        for q in range(np.uint64(side + begin), np.uint64(side + end)):
-            if same[q] != np.int64(q):
-                continue
-            du, wu, hu, u0 = mix[0, q], mix[1, q], mix[2, q], mix[3, q]
-            wv, hv, v0 = mix[4, q], mix[5, q], mix[6, q]
-            # For head and feet, or for the body: zero terms are omitted.
-            if wu == zero and wv == zero and (du == zero or du == np.float32(1)):
-                base = np.uint64(0) if du == zero else np.uint64(5)
-                for k in range(np.uint64(LANES)):
-                    u = lanes[base, k] + hu * lanes[4, k] + u0
-                    v = lanes[1, k] + hv * lanes[4, k] + v0
-                    at[q, k] = _pixel(u, v, columns, right, bottom)
-                    lowest[k] = min(lowest[k], at[q, k])
-            else:
-                for k in range(np.uint64(LANES)):
-                    u = lanes[0, k] + du * lanes[2, k] + wu * lanes[3, k] + hu * lanes[4, k] + u0
-                    v = lanes[1, k] + wv * lanes[3, k] + hv * lanes[4, k] + v0
-                    at[q, k] = _pixel(u, v, columns, right, bottom)
-                    lowest[k] = min(lowest[k], at[q, k])
+    # Unsigned, as numba would otherwise check for negative indices.
+    for q in range(np.uint64(len(at))):
+        if same[q] != np.int64(q):
+            continue
+        du, wu, hu, u0 = mix[0, q], mix[1, q], mix[2, q], mix[3, q]
+        wv, hv, v0 = mix[4, q], mix[5, q], mix[6, q]
+        # For head and feet, or for the body: zero terms are omitted.
+        if wu == zero and wv == zero and (du == zero or du == np.float32(1)):
+            base = np.uint64(0) if du == zero else np.uint64(5)
+            for k in range(np.uint64(LANES)):
+                u = lanes[base, k] + hu * lanes[4, k] + u0
+                v = lanes[1, k] + hv * lanes[4, k] + v0
+                at[q, k] = _pixel(u, v, columns, right, bottom)
+                lowest[k] = min(lowest[k], at[q, k])
+        else:
+            for k in range(np.uint64(LANES)):
+                u = lanes[0, k] + du * lanes[2, k] + wu * lanes[3, k] + hu * lanes[4, k] + u0
+                v = lanes[1, k] + wv * lanes[3, k] + hv * lanes[4, k] + v0
+                at[q, k] = _pixel(u, v, columns, right, bottom)
+                lowest[k] = min(lowest[k], at[q, k])
 
 
 @njit(cache=True, nogil=True)
@@ -315,7 +296,7 @@ def share_in_view(
 def locate_points(at: NDArray[np.int32], sample: Floats, mix: Floats, width: int, height: int) -> None:
     """Write the pixels of `pixels_under` a contour (9,) into (2 P,)."""
     lanes, pixels = np.empty((6, LANES), dtype=np.float32), np.empty((len(at), LANES), dtype=np.int32)
-    _load(lanes, sample.reshape(1, -1), np.zeros(1, dtype=np.int64), 0)
+    _load(lanes, sample.reshape(1, -1), 0)
     lowest = np.empty(LANES, dtype=np.int32)
-    _locate(pixels, lowest, lanes, mix, np.arange(len(at)), 0, len(at) // 2, (height, width))
+    _locate(pixels, lowest, lanes, mix, np.arange(len(at)), (height, width))
     at[:] = pixels[:, 0]

@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 from scipy.stats import kstat
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.reproductions.contour.appearance.colour_histograms import cumulative_histograms
 from peopleboy.tracker.reproductions.contour.appearance.colour_view import (
     PowerSums,
-    cumulative_histograms,
     normalised_moments,
 )
 
