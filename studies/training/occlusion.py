@@ -25,6 +25,11 @@ from peopleboy.studies.training.samples import (
     sample_folder,
 )
 from peopleboy.studies.training.specification import Specification
+from peopleboy.studies.training.weak_classifiers import (
+    SortedSums,
+    best_stump,
+    weighted_sums,
+)
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.reproductions.contour.contour_config import TrackerConfig
 from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
@@ -44,11 +49,6 @@ from peopleboy.tracker.reproductions.contour.occlusion.pair_features import (
     FEATURES,
     Features,
     overlapping_pairs,
-)
-from peopleboy.tracker.reproductions.contour.occlusion.weak_classifiers import (
-    SortedSums,
-    best_stump,
-    weighted_sums,
 )
 from peopleboy.tracker.reproductions.contour.particle_filter import FrameView
 from peopleboy.tracker.reproductions.contour.variants import CONTOUR, THESIS_OCCLUSION

@@ -1,1 +1,1 @@
-"""The trackers and models of the sources: as printed, and our best of the same kind."""
+"""The trackers of the sources: as printed, and our best of the same kind."""

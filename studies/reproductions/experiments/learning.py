@@ -23,9 +23,9 @@ from peopleboy.studies.training.occlusion import (
     collect_pairs,
 )
 from peopleboy.studies.training.samples import Split
+from peopleboy.studies.training.weak_classifiers import weighted_sums
 from peopleboy.tracker.reproductions.contour.occlusion.learned_table import LearnedTable
 from peopleboy.tracker.reproductions.contour.occlusion.pair_features import FEATURES
-from peopleboy.tracker.reproductions.contour.occlusion.weak_classifiers import weighted_sums
 
 CLASSIFIERS, PAIRS = "weak classifiers", "pairs"
 THESIS_PAIRS: Final = 121

@@ -22,10 +22,10 @@ from peopleboy.sim.truth.truth import Backgrounds, Truth
 from peopleboy.studies.reproductions.experiment import Line, Row, Samples, as_columns, mean, ratio
 from peopleboy.studies.reproductions.experiments.playback import Stopwatch, play
 from peopleboy.studies.reproductions.plan import PRESETS, SEQUENCES
+from peopleboy.studies.reproductions.scene_model.printed_config import VARIANTS
+from peopleboy.studies.reproductions.scene_model.printed_model import PrintedSceneModel
 from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.tracker.frame import DEPTH, Frame
-from peopleboy.tracker.reproductions.scene_model.printed_config import VARIANTS
-from peopleboy.tracker.reproductions.scene_model.printed_model import PrintedSceneModel
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.scene import Happening, Metres, VistaScene
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneConfig

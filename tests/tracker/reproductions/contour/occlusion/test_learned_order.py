@@ -6,6 +6,7 @@ from hypothesis.extra.numpy import arrays
 
 from peopleboy.bad_input import BadInput
 from peopleboy.studies.training.occlusion import boost
+from peopleboy.studies.training.weak_classifiers import weighted_sums
 from peopleboy.tracker.reproductions.contour.contour_config import DepthOrderConfig
 from peopleboy.tracker.reproductions.contour.occlusion.learned_order import (
     LearnedOrder,
@@ -18,7 +19,6 @@ from peopleboy.tracker.reproductions.contour.occlusion.learned_table import (
     WeakClassifier,
 )
 from peopleboy.tracker.reproductions.contour.occlusion.pair_features import FEATURES
-from peopleboy.tracker.reproductions.contour.occlusion.weak_classifiers import weighted_sums
 from tests.helpers.calls.refused import refused
 
 WEAK = (

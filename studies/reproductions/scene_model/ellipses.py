@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba import njit
 
+from peopleboy.studies.reproductions.scene_model.clusters import Clusters
+from peopleboy.studies.reproductions.scene_model.printed_config import EllipseConfig, PrintedConfig
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.reproductions.scene_model.clusters import Clusters
-from peopleboy.tracker.reproductions.scene_model.printed_config import EllipseConfig, PrintedConfig
 from peopleboy.tracker.scene_model.connected_pieces import Bools
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.studies.reproductions.scene_model.printed_config import PrintedConfig
 from peopleboy.tracker.frame import DEPTH, Floats, Frame
-from peopleboy.tracker.reproductions.scene_model.printed_config import PrintedConfig
 from peopleboy.tracker.scene_model.connected_pieces import Bools
 from peopleboy.tracker.scene_model.geometry import Geometry, grey_of
 from peopleboy.tracker.scene_model.scene import Metres

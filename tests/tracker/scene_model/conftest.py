@@ -1,4 +1,4 @@
-"""What tests of the tracker share."""
+"""What tests of the scene model share."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.reproductions.contour.occlusion.weak_classifiers import (
+from peopleboy.studies.training.weak_classifiers import (
     SortedSums,
     best_stump,
     weighted_sums,

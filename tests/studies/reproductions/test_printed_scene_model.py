@@ -9,14 +9,20 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
+from peopleboy.studies.reproductions.scene_model.ellipses import inside, propagated
+from peopleboy.studies.reproductions.scene_model.printed_config import VARIANTS, EllipseConfig
+from peopleboy.studies.reproductions.scene_model.printed_model import PrintedSceneModel
 from peopleboy.tracker.frame import DEPTH_COLOUR
-from peopleboy.tracker.reproductions.scene_model.ellipses import inside, propagated
-from peopleboy.tracker.reproductions.scene_model.printed_config import VARIANTS, EllipseConfig
-from peopleboy.tracker.reproductions.scene_model.printed_model import PrintedSceneModel
 from peopleboy.tracker.scene_model.scene import VistaScene
 from tests.helpers.still_room import Screen, room_frame, true_depth
 
 BOX = Screen(3.0, 0.3, -0.3, 0.0, 0.6)
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """Draws the same in every test."""
+    return np.random.default_rng(0)
 
 
 def last(name: str, films: list[list[Screen]], rng: np.random.Generator) -> VistaScene:

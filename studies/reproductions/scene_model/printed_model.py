@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 from numba import njit
 
+from peopleboy.studies.reproductions.scene_model.clusters import Cloud, CloudMaker, Clusters, find_clusters
+from peopleboy.studies.reproductions.scene_model.ellipses import MovingEllipse, MovingEllipses, inside
+from peopleboy.studies.reproductions.scene_model.printed_config import PrintedBackground, PrintedConfig
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.reproductions.scene_model.clusters import Cloud, CloudMaker, Clusters, find_clusters
-from peopleboy.tracker.reproductions.scene_model.ellipses import MovingEllipse, MovingEllipses, inside
-from peopleboy.tracker.reproductions.scene_model.printed_config import PrintedBackground, PrintedConfig
 from peopleboy.tracker.scene_model.connected_pieces import Bools, PixelSpan, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.scene import (
