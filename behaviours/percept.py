@@ -54,8 +54,6 @@ class Percept:
         angular_rad_s: [rad/s] turn rate from the wheels, positive to the left.
         images: new images by camera name, such as `colour`, (H, W, 3) uint8 sRGB; may be rendered on demand.
         image_age_s: [s] age of the newest image; `people` are those of that image.
-        knows_again: whether returning people get their previous id after any absence, so that a new id is
-            always another person.
         fault: why people cannot be detected now, such as a tracker's error; empty if all is well.
 
     Raises:
@@ -70,7 +68,6 @@ class Percept:
     angular_rad_s: float
     images: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
     image_age_s: float = 0.0
-    knows_again: bool = False
     fault: str = ""
 
     def __post_init__(self) -> None:

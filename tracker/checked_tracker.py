@@ -16,7 +16,7 @@ from peopleboy.tracker.evaluation.latency import TimedImages
 from peopleboy.tracker.evaluation.sequence import FARTHEST, LARGEST
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
-from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
+from peopleboy.tracker.trackers import Tracker, explanation_of
 
 
 class CheckedTracker:
@@ -41,11 +41,6 @@ class CheckedTracker:
     def cameras(self) -> tuple[str, ...]:
         """The cameras of the tracker."""
         return self._tracker.cameras
-
-    @property
-    def knows_again(self) -> bool:
-        """Whether the tracker re-identifies people."""
-        return knows_again(self._tracker)
 
     @property
     def explanation(self) -> object:

@@ -84,14 +84,6 @@ def explanation_of(tracker: Tracker) -> object:
     return getattr(tracker, "explanation", None)
 
 
-def knows_again(tracker: Tracker) -> bool:
-    """Return whether a tracker re-identifies people after long absences: its `knows_again`.
-
-    Then a new id is always a new person. Trackers without the attribute do not.
-    """
-    return bool(getattr(tracker, "knows_again", False))
-
-
 def _contour_tracker(name: str, rng: "np.random.Generator") -> "ContourTracker":
     from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
     from peopleboy.tracker.reproductions.contour.variants import VARIANTS
@@ -275,8 +267,7 @@ def _fused(rng: "np.random.Generator", detector: "ImageDetector | None" = None) 
     "attentive",
     scope="the default, with the long memory of the situation-awareness thesis, chapter 5",
     summary="Like `detection`, but remembers people for ten minutes: a person who comes back gets the old "
-    "id, and unknown people get new ids. A robot that follows a person keeps searching until the person "
-    "is visible again.",
+    "id, and unknown people get new ids.",
 )
 def _attentive(
     rng: "np.random.Generator",  # noqa: ARG001

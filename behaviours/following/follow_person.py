@@ -1,6 +1,7 @@
 """Person following by position and height in the image: search, approach, and keep the distance."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from peopleboy.behaviours.behaviour import STOP, Command
@@ -13,7 +14,6 @@ from peopleboy.behaviours.following.avoidance import (
     is_way_out,
     swerve,
 )
-from peopleboy.behaviours.following.follow_identity import FollowIdentityConfig, company, recognise
 from peopleboy.behaviours.following.last_seen import (
     LastPlace,
     PlaceConfig,
@@ -69,18 +69,17 @@ class FollowConfig:
         gone_s: [s] the same for a person lost in the middle of the image without an occluder, behind a wall
             or by a missed detection; then the robot drives to the last position.
         recover_1_s: [1/s] speed per distance on the way there.
-        give_up_s: [s] time without observation after which the robot may follow another person ...
-        give_up_known_s: [s] ... and the same with a tracker that re-identifies people.
+        give_up_s: [s] time without the person's track after which the robot may follow another person.
+        min_confidence: people of lower confidence are not followed.
         leaving_rad: [rad] bearing, measured or predicted, from which a person has left the image.
         target: smoothing of measurements.
-        identity: conditions for identifying the followed person.
         hidden: conditions for people who can occlude the followed person.
         place: settings of the drive to the last position.
         avoid: obstacle avoidance.
         avoid_alone: the same on the way to the last position, without a person to keep in view.
         heard: memory of echoes for that, since an edge vanishes in the gaps between the sonars' cones.
-        room: settings of making room for a person lost by being too near, with a tracker that re-identifies
-            people; otherwise the robot would block the door through which the person returns.
+        room: settings of making room for a person lost by being too near; otherwise the robot would block
+            the door through which the person returns.
     """
 
     keep_height: float = 0.58
@@ -106,10 +105,9 @@ class FollowConfig:
     gone_s: float = 0.7
     recover_1_s: float = 0.6
     give_up_s: float = 30.0
-    give_up_known_s: float = 300.0
+    min_confidence: float = 0.5
     leaving_rad: float = math.radians(26.0)
     target: TargetConfig = field(default_factory=TargetConfig)
-    identity: FollowIdentityConfig = field(default_factory=FollowIdentityConfig)
     hidden: OccluderConfig = field(default_factory=OccluderConfig)
     place: PlaceConfig = field(default_factory=PlaceConfig)
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
@@ -128,7 +126,6 @@ class FollowState:
         reason: reason for the mode.
         time_s: [s] time of the last valid percept.
         target: the followed person; None before the first one and after giving up.
-        others: tracks that were visible together with the followed person, and so are other people.
         walking_m_s: [m/s] estimated speed at which the person walks away.
         side: +1 (left) or -1, direction of the search: the person's last direction of motion.
         has_left: whether the person was leaving the image sideways when last seen.
@@ -143,7 +140,6 @@ class FollowState:
     reason: str = "no person detected yet"
     time_s: float = -math.inf
     target: Target | None = None
-    others: frozenset[int] = frozenset()
     walking_m_s: float = 0.0
     side: int = 1
     has_left: bool = False
@@ -202,7 +198,7 @@ def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[
     gap_s = percept.time_s - state.target.seen_s
     if gap_s <= config.max_age_s:
         return _go_after(state, state.target, percept, step_s, config)
-    if percept.knows_again and _is_too_near(state.target, gap_s, percept, config):
+    if _is_too_near(state.target, gap_s, percept, config):
         return _make_room(state, state.target, config)
     why, patience_s = _patience(state, state.target, percept, config)
     if gap_s <= patience_s:
@@ -218,56 +214,47 @@ def distance_error(height: float, config: FollowConfig) -> float:
 
 
 def _update_target(state: FollowState, percept: Percept, step_s: float, config: FollowConfig) -> FollowState:
-    """Predict the followed person, identify it, and give it up after a long absence."""
+    """Predict the followed person, find its track, and give it up after a long absence."""
     known = state.target
-    # After a pause, such as a stop without images, only the track tells where the person is.
-    if known is not None and step_s > config.wait_s and all(one.id != known.id for one in percept.people):
-        known = None
-    give_up_s = config.give_up_known_s if percept.knows_again else config.give_up_s
-    if known is not None and percept.time_s - known.seen_s > give_up_s:
-        known = None
-    if known is None:
-        state = replace(state, target=None, others=frozenset(), place=None)
-    else:
-        motion = RobotMotion.of(percept, step_s)
-        known = carry_on(known, motion)
-        place = None if state.place is None else carry_place(state.place, motion)
-        gone = forget_drift(known, step_s, config.target)
-        if config.max_age_s < percept.time_s - known.seen_s < config.patience_s:
-            gone = keep_behind(gone, percept.people, config.hidden, config.target)
-        state = replace(state, target=gone, place=place)
-    gap_s = 0.0 if known is None else percept.time_s - known.seen_s
-    person = recognise(
-        percept.people,
-        known,
-        state.others,
-        gap_s,
-        config.identity,
-        config.target,
-        knows_again=percept.knows_again,
-    )
-    if person is None:
-        if known is None:
-            return state
-        strangers = company(percept.people, known.id, state.others)
-        return replace(state, others=strangers) if gap_s <= config.identity.place_s else state
-    if known is None or gap_s > config.wait_s:
-        seen = first_sight(person, percept.time_s, config.target)
-    else:
-        seen = look_again(known, person, percept.time_s, step_s, config.target)
-    return _seen_at(state, seen, person, percept, config)
+    gap_s = math.inf if known is None else percept.time_s - known.seen_s
+    if known is None or gap_s > config.give_up_s:
+        person = max(_can_be_followed(percept.people, config), key=lambda one: one.height, default=None)
+        state = replace(state, target=None, place=None)
+        return state if person is None else _sight(state, person, percept, config)
+    person = next((one for one in _can_be_followed(percept.people, config) if one.id == known.id), None)
+    if person is not None and gap_s > config.wait_s:
+        return _sight(state, person, percept, config)
+    motion = RobotMotion.of(percept, step_s)
+    moved = carry_on(known, motion)
+    if person is not None:
+        return _seen_at(state, look_again(moved, person, percept.time_s, step_s, config.target), config)
+    lost = forget_drift(moved, step_s, config.target)
+    if config.max_age_s < gap_s < config.patience_s:
+        lost = keep_behind(lost, percept.people, config.hidden, config.target)
+    # After a pause, such as a stop without images, the last position is unknown.
+    place = None if state.place is None or step_s > config.wait_s else carry_place(state.place, motion)
+    return replace(state, target=lost, place=place)
 
 
-def _seen_at(
-    state: FollowState, seen: Target, person: SeenPerson, percept: Percept, config: FollowConfig
-) -> FollowState:
+def _can_be_followed(people: Iterable[SeenPerson], config: FollowConfig) -> list[SeenPerson]:
+    """Return the people who are visible, with enough confidence."""
+    return [
+        one for one in people if one.is_sound and one.is_visible and one.confidence >= config.min_confidence
+    ]
+
+
+def _sight(state: FollowState, person: SeenPerson, percept: Percept, config: FollowConfig) -> FollowState:
+    """Begin to follow a person, or go on after a pause, when the prediction is of no use."""
+    return _seen_at(state, first_sight(person, percept.time_s, config.target), config)
+
+
+def _seen_at(state: FollowState, seen: Target, config: FollowConfig) -> FollowState:
     """Store the state that is needed if this is the last observation of the person."""
     soon = seen.bearing_rad + seen.drift_rad_s * config.max_age_s
     later = seen.bearing_rad + seen.drift_rad_s * config.wait_s
     return replace(
         state,
         target=seen,
-        others=company(percept.people, person.id, state.others),
         side=1 if later >= 0.0 else -1,
         has_left=max(abs(seen.bearing_rad), abs(soon)) > config.leaving_rad,
         place=place_of(seen, config.place),
@@ -301,7 +288,7 @@ def _search(
     if state.mode in ("follow", "wait", "blind"):
         state = replace(state, reason="the person has not returned")
     state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s, searched_rad=turned)
-    if percept.knows_again and turned > math.tau:
+    if turned > math.tau:
         gone_m = state.cleared_m + max(percept.linear_m_s, 0.0) * min(step_s, config.max_age_s)
         state = replace(state, cleared_m=gone_m)
         if is_way_out(echoes(percept), config.room, gone_m):

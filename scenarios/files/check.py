@@ -276,8 +276,9 @@ def _check_behaviour(robot: RobotSpec) -> None:
             f"a scripted robot needs at least one, such as {example}; or use behaviour 'stand'",
             key=("commands",),
         )
-    if robot.keep_height is not None and robot.behaviour != "follow_person":
-        raise BadInput("only behaviour 'follow_person' takes it; leave it out", key=("keep_height",))
+    for key in ("keep_height", "give_up_s"):
+        if getattr(robot, key) is not None and robot.behaviour != "follow_person":
+            raise BadInput("only behaviour 'follow_person' takes it; leave it out", key=(key,))
     if robot.walls_by is not None and robot.behaviour != "follow_corridor":
         raise BadInput("only behaviour 'follow_corridor' takes it; leave it out", key=("walls_by",))
     if robot.tracker is not None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 from pydantic import Field, model_validator
 
 from peopleboy.bad_input import BadInput, found_in
+from peopleboy.behaviours.following.follow_person import FollowConfig
 from peopleboy.behaviours.make_behaviour import BEHAVIOURS
 from peopleboy.scenarios.files.validation import GivenCamera
 from peopleboy.settings import Point, Seconds, meaning_of
@@ -75,6 +76,13 @@ class RobotSpec:
             le=1.5,
             description="for a robot that follows people: height of the person in the image at which the "
             "robot stops [image heights]",
+        ),
+    ] = None
+    give_up_s: Annotated[
+        Seconds | None,
+        Field(
+            description="for a robot that follows people: time without the track of its person after which "
+            f"it may follow another person, by default {FollowConfig().give_up_s:g} s"
         ),
     ] = None
     walls_by: Annotated[

@@ -208,9 +208,12 @@ class Scenario:
         )
 
     def follow_config(self) -> FollowConfig:
-        """Return gains and heights of a robot that follows a person."""
-        keep_height = self.robot.keep_height
-        return FollowConfig() if keep_height is None else FollowConfig(keep_height=keep_height)
+        """Return gains and limits of a robot that follows a person."""
+        robot, default = self.robot, FollowConfig()
+        return FollowConfig(
+            keep_height=default.keep_height if robot.keep_height is None else robot.keep_height,
+            give_up_s=default.give_up_s if robot.give_up_s is None else robot.give_up_s,
+        )
 
     def corridor_config(self) -> FollowCorridorConfig:
         """Return the settings for following a corridor: the sensor that measures walls, and the camera."""

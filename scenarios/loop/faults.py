@@ -20,7 +20,7 @@ from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.frame import Frame, Odometry, joined
 from peopleboy.tracker.track import Track
-from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
+from peopleboy.tracker.trackers import Tracker, explanation_of
 
 Current = tuple[FaultSpec, float]  # a fault that is active, and the time [s] since it began
 _REPEATING = ("camera_frozen", "camera_shutter", "frames_dropped", "frames_late", "frames_duplicated")
@@ -226,11 +226,6 @@ class FaultyTracker:
     def cameras(self) -> tuple[str, ...]:
         """Cameras that the wrapped tracker needs."""
         return self._tracker.cameras
-
-    @property
-    def knows_again(self) -> bool:
-        """Whether the wrapped tracker re-identifies people."""
-        return knows_again(self._tracker)
 
     @property
     def explanation(self) -> object:

@@ -21,7 +21,7 @@ from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.reproductions.contour.box_interaction import standing_box
 from peopleboy.tracker.track import Box, Status, Track
-from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again, make_tracker
+from peopleboy.tracker.trackers import Tracker, explanation_of, make_tracker
 
 
 def thermal_box(track: Track, calibration: Calibration) -> Box | None:
@@ -128,9 +128,7 @@ class Perception:
         newest = self._newest
         self.failed = self._health.check(observation)
         sound = self._without_failed(observation)
-        percept_of = partial(
-            make_percept, sound, self._cameras, self._calibrations, knows_again=knows_again(self._tracker)
-        )
+        percept_of = partial(make_percept, sound, self._cameras, self._calibrations)
         if newest is not None and self._health.only_repeats:
             return percept_of(self.tracks, image_age_s=observation.time_s - newest.time_s)
         before = None if newest is None else newest.odometry
@@ -215,7 +213,6 @@ def make_percept(
     tracks: tuple[Track, ...],
     *,
     image_age_s: float = 0.0,
-    knows_again: bool = False,
     fault: str = "",
 ) -> Percept:
     """Return the input of the behaviour: confirmed tracks, sonar ranges and speeds from the wheels."""
@@ -236,7 +233,6 @@ def make_percept(
         angular_rad_s=(right - left) / WHEEL_DISTANCE_M,
         images=observation.images,
         image_age_s=image_age_s,
-        knows_again=knows_again,
         fault=fault,
     )
 

@@ -41,7 +41,7 @@ from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.evaluation.latency import write_latency
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.tracker_names import shown_name, with_detector
-from peopleboy.tracker.trackers import knows_again
+from peopleboy.tracker.trackers import explanation_of
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.recording.recorder import Recorder
@@ -177,6 +177,7 @@ def run(
         recorder = None
         if is_recorded(options.record):
             from peopleboy.scenarios.recording.recorder import Recorder  # here, as it loads rerun
+            from peopleboy.tracker.reproductions.attention.attentive_explanation import AttentiveExplanation
 
             recorder = stack.enter_context(
                 Recorder(
@@ -185,7 +186,7 @@ def run(
                     title=title,
                     viewer=options.viewer,
                     watched=tracker.cameras,
-                    attends=knows_again(tracker),
+                    attends=isinstance(explanation_of(tracker), AttentiveExplanation),
                     is_lossless=options.lossless,
                 )
             )

@@ -120,7 +120,6 @@ class ReidentificationConfig:
         least: log-odds from which a new track is a lost one.
         unclear: how much less than these leave the identity of a new track open,
         undecided_s: for at most so long.
-        is_final: whether a new number is always a new person, so that a robot waits for the one it follows.
     """
 
     lost_s: float = 0.2
@@ -143,7 +142,6 @@ class ReidentificationConfig:
     least: float = 0.0
     unclear: float = 3.0
     undecided_s: float = 0.5
-    is_final: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -325,7 +323,7 @@ _UNKNOWN_IS_OTHER: Final = ReidentificationConfig(colour_unknown=-2.0, least=1.0
 
 ATTENTIVE: Final = PeopleTrackerConfig(
     existence=ExistenceConfig(forget_s=600.0),
-    reidentification=ReidentificationConfig(colour_unknown=-2.0, is_final=True),
+    reidentification=ReidentificationConfig(colour_unknown=-2.0),
 )
 """Settings for people who come back after minutes, chosen on seeds 102 to 107 of `absence_60s`."""
 

@@ -91,11 +91,6 @@ class PeopleTracker:
         parts = tuple(sensor.explanation for sensor in self._sensors)
         return parts[0] if len(parts) == 1 else SensorExplanations(parts)
 
-    @property
-    def knows_again(self) -> bool:
-        """Whether a new id is always a new person."""
-        return self._config.reidentification.is_final
-
     def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
         """Refuse unsuitable cameras, by name, before the first frame.
 

@@ -1,4 +1,4 @@
-"""Waiting for a person who is known again."""
+"""Room for a person who was lost by being too near, and the return of a lost person."""
 
 import dataclasses
 
@@ -20,32 +20,19 @@ def play(state, from_s, seconds, *people, **changes):
     return state, command
 
 
-def test_nobody_else_is_followed_for_minutes_where_people_are_known_again():
-    stranger = person(x=0.1, id=2)
-    for knows_again, target in ((True, 1), (False, 2)):
-        state, _ = play(FollowState(), 1.0, 1.0, person(), knows_again=knows_again)
-        state, _ = play(state, 2.0, 60.0, knows_again=knows_again)
-        state, command = play(state, 62.0, 1.0, stranger, knows_again=knows_again)
-        assert state.target.id == target
-        assert (state.mode == "follow") != knows_again
-    assert np.isfinite(command.linear_m_s)
-
-
-def test_who_comes_back_under_the_old_number_is_followed_at_once():
-    state, _ = play(FollowState(), 1.0, 1.0, person(), knows_again=True)
-    state, _ = play(state, 2.0, 60.0, person(x=0.3, id=2), knows_again=True)
-    state, _ = play(state, 62.0, 0.2, person(x=-0.4), person(x=0.3, id=2), knows_again=True)
+def test_a_person_who_comes_back_under_the_same_id_is_followed_at_once_also_beside_another():
+    state, _ = play(FollowState(), 1.0, 1.0, person())
+    state, _ = play(state, 2.0, 20.0, person(x=0.3, id=2))
+    state, _ = play(state, 22.0, 0.2, person(x=-0.4), person(x=0.3, id=2))
     assert (state.mode, state.target.id) == ("follow", 1)
 
 
 def test_who_came_too_near_to_be_seen_has_room_made_only_while_somebody_is_there():
-    state, _ = play(FollowState(), 1.0, 1.0, person(height=1.2), knows_again=True)
-    near = dataclasses.replace(free(i3=0.6, i4=0.6), time_s=3.0, knows_again=True)
+    state, _ = play(FollowState(), 1.0, 1.0, person(height=1.2))
+    near = dataclasses.replace(free(i3=0.6, i4=0.6), time_s=3.0)
     _, command = follow(state, near, CONFIG)
     assert command.linear_m_s < 0.0
     _, command = follow(state, dataclasses.replace(near, sonar_m=free().sonar_m), CONFIG)
-    assert command.linear_m_s >= 0.0
-    _, command = follow(state, dataclasses.replace(near, knows_again=False), CONFIG)
     assert command.linear_m_s >= 0.0
 
 

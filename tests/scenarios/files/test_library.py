@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
+from peopleboy.behaviours.following.follow_person import FollowConfig
 from peopleboy.scenarios.drawing.draw_plan import draw_plan
 from peopleboy.scenarios.files.library import LIBRARY, library
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
@@ -157,6 +158,11 @@ def test_a_following_robot_and_a_scripted_one_get_their_behaviour() -> None:
         scenario = loaded(name)
         assert scenario.make_behaviour() is not scenario.make_behaviour()
         assert scenario.robot.behaviour in behaviours
+
+
+def test_a_follower_waits_for_a_person_for_as_long_as_the_scenario_says() -> None:
+    assert loaded("follow_absence").follow_config().give_up_s == 300.0
+    assert loaded("single_follow").follow_config() == FollowConfig()
 
 
 @pytest.mark.parametrize(

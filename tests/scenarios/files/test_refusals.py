@@ -421,6 +421,10 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
             "'scripted'",
         ),
     ),
+    "a time to give up for a standing robot": (
+        lambda d: d["robot"].update(give_up_s=60.0),
+        ("robot.give_up_s: ", "'follow_person'"),
+    ),
     "commands out of order": (
         lambda d: d["robot"].update(behaviour="scripted", commands=[{"from_s": 2.0}, {"from_s": 1.0}]),
         (

@@ -129,8 +129,6 @@ class AttentiveTracker(Generic[Appearance, Seen]):
     the tracker, and to re-identify people after a long absence.
     """
 
-    knows_again = True
-
     def __init__(
         self,
         below: Below,

@@ -16,7 +16,7 @@ from peopleboy.tracker.reproductions.attention.attentive_tracker import (
 from peopleboy.tracker.reproductions.attention.person_views import PersonView, box_in
 from peopleboy.tracker.reproductions.attention.recogniser import ByColour, ByFocus
 from peopleboy.tracker.track import FloorPlace, Status, Track
-from peopleboy.tracker.trackers import TRACKERS, knows_again, make_tracker
+from peopleboy.tracker.trackers import TRACKERS, make_tracker
 from tests.helpers.calls.refused import refused
 from tests.tracker.reproductions.attention.test_attend import GREEN, RED, scene
 
@@ -165,12 +165,8 @@ def test_without_colours_it_is_refused_in_one_line():
 
 
 @pytest.mark.parametrize("name", [name for name in TRACKERS if name.startswith("attentive")])
-def test_the_registered_ones_know_people_again_and_want_colours(name):
-    tracker = make_tracker(name)
-    assert knows_again(tracker)
-    assert {THERMAL, COLOUR} <= set(tracker.cameras)
-    assert not knows_again(make_tracker("contour"))
-    assert not knows_again(make_tracker("detection"))
+def test_the_registered_ones_want_colours(name):
+    assert {THERMAL, COLOUR} <= set(make_tracker(name).cameras)
 
 
 def test_settings_out_of_range_are_refused():
