@@ -15,14 +15,12 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.random_streams import stream
 from peopleboy.scenarios.environments.arguments import (
     check_actions,
     check_options,
     check_size,
     check_word,
     shown_cameras,
-    vary,
     whole_number,
     world_of,
 )
@@ -46,6 +44,7 @@ from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.files.variation import EpisodeSpec, as_ranges, resized, vary
 from peopleboy.scenarios.loop.faults import FaultyTracker, SensorFaults
 from peopleboy.scenarios.loop.loop import TrackerDown
 from peopleboy.scenarios.loop.tracker_by_name import make_checked_tracker, tracker_cameras
@@ -57,7 +56,6 @@ from peopleboy.sim.batch.sensing import Snapshot, take_snapshot
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.rendering.view import BLIND
-from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.frame import Frame
@@ -88,7 +86,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     `reset(seed=3)` plays the world of `peopleboy run --seed 3`: the same commands give the same ground truth
     and, with the tracks of the same tracker, the same metrics. `reset()` samples the next seed from that
     seed. `reset(options=...)` varies this one episode, see
-    `peopleboy.scenarios.environments.arguments.LIMITS`.
+    `peopleboy.scenarios.files.variation.LIMITS`.
 
     Args:
         scenario: library name or path of a YAML file; None for a random world of 30 s at every reset, sampled
@@ -148,7 +146,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             raise BadInput(f"normalise {normalise!r} must be True or False")
         self._draws_worlds, self._physics = scenario is None, physics
         self.vary_by({} if randomise is None else randomise)
-        first = self._moved(_random_episode(0) if scenario is None else load_scenario(scenario))
+        loaded = _random_episode(0) if scenario is None else load_scenario(scenario)
+        first = self._moved(loaded.as_episode(0, None) if loaded.episode else loaded)
         self._tracker_name = first.tracker if tracker is None else tracker
         self._wanted = tracker_cameras(self._tracker_name)  # raises for an unknown name
         self.task, self._kind, self._size = task, observation, image_size
@@ -187,21 +186,21 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._seed = int(self.np_random.integers(_SEEDS)) if seed is None else seed
         if self._draws_worlds:
             self._take(self._moved(_random_episode(self._seed, world_of(chosen))))
-        config = self._config(chosen)
+        self._ranges = as_ranges(chosen)
+        config = self._config()
         world = self._world = SimulatedWorld(config)
         try:
-            return self._begin(world, is_varied=bool(chosen))
+            return self._begin(world)
         except BaseException:
             self._free()
             raise
 
-    def _begin(self, world: SimulatedWorld, *, is_varied: bool) -> tuple[Arrays, dict[str, Any]]:
+    def _begin(self, world: SimulatedWorld) -> tuple[Arrays, dict[str, Any]]:
         """Begin an episode in a new world."""
         config = world.config
         self._calibrations = calibrations_of(config.robot.cameras)
         self._dt_s = 1.0 / config.control_hz
         self._commands: list[Command] = []
-        self._is_varied = is_varied
         faults = self._scenario.spec.faults
         self._faults = SensorFaults(faults, config.robot.sonar.farthest_m) if faults else None
         self._tracker: Tracker | None = None
@@ -346,43 +345,48 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._running(even_over=True)
         return self._episodes.metrics(self._number)
 
-    def save(self, folder: str | Path, *, record: bool = True, overwrite: bool = False) -> None:
+    def save(self, folder: str | Path, *, record: bool = True, overwrite: bool = False) -> Path:
         """Write the episode so far as a run folder, for reports, the viewer and exports.
 
-        Replays the world with the episode's commands, so this takes as long as a run. The tracks are those of
-        the environment's tracker; with `observation="truth"`, they are the true boxes.
+        Replays the world with the episode's commands, so this takes as long as a run. The run has the frames
+        and the metrics of the episode; run.json says how it ended, and rewards.parquet has the terms of the
+        reward of each step. The tracks are those of the environment's tracker; without one, they are the true
+        boxes, and the images have the scenario's size.
 
         Args:
             folder: output folder.
             record: whether to write a recording.
             overwrite: whether to replace an earlier run in the folder.
 
+        Returns:
+            The folder.
+
         Raises:
-            BadInput: no episode has begun, the episode was varied by options, its image size or physics
-                differ from those of a run, or the folder cannot be written to.
+            BadInput: no episode has begun, or the folder cannot be written to.
         """
         from peopleboy.scenarios.running.run import save_episode  # here, as only saved episodes need it
         from peopleboy.scenarios.running.run_options import RunOptions
 
-        config = self._running(even_over=True).config
-        usual = self._scenario.world(self._seed)
-        if self._is_varied:
-            raise BadInput("save: the episode was varied by options, which a run cannot be; reset without")
-        if config.physics_hz != usual.physics_hz:
-            raise BadInput(f"save: a run has physics_hz={usual.physics_hz}, got {config.physics_hz}")
-        if self._kind == "tracks" and self._robot != usual.robot:
-            raise BadInput(f"save: a run has the scenario's image size, got image_size={self._size}")
-        if Path(folder).exists() and not overwrite:
+        config, folder = self._running(even_over=True).config, Path(folder)
+        if folder.exists() and not overwrite:
             raise BadInput(f"save: {folder}: exists already; give overwrite=True to replace a run there")
+        has_tracker = self._kind == "tracks"
         options = RunOptions(
             seed=self._seed,
-            out=Path(folder),
-            tracker=ORACLE if self._kind == "truth" else self._tracker_name,
+            out=folder,
+            tracker=self._tracker_name if has_tracker else ORACLE,
             record=record,
             overwrite=overwrite,
         )
-        frames = int(min(self._own["frame"] + 1, self._own["frames"]))
-        save_episode(self._scenario, self._commands, frames, options, config.control_hz)
+        episode = EpisodeSpec(
+            frames=int(min(self._own["frame"] + 1, self._own["frames"])),
+            physics_hz=config.physics_hz,
+            image_size=list(self._size) if has_tracker else None,
+            options=self._ranges,
+        )
+        scenario = self._scenario.as_episode(self._seed, episode)
+        save_episode(scenario, self._commands, options, self._episodes.result(self._number))
+        return folder
 
     def close(self) -> None:
         """Free the physics world, and close the viewer."""
@@ -449,15 +453,15 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     def _take(self, scenario: Scenario) -> None:
         """Play this scenario from the next episode on."""
         self._scenario = scenario.mounting(self._wanted) if self._kind == "tracks" else scenario
-        self._robot = _resize(self._scenario.robot.config(), self._size)
+        self._robot = resized(self._scenario.robot.config(), self._size)
         self._picture = ScenePicture(scenario.plan, scenario.place) if self.render_mode else None
 
-    def _config(self, options: Mapping[str, Any]) -> WorldConfig:
+    def _config(self) -> WorldConfig:
         config = self._scenario.world(self._seed)
         needs_images = self._kind != "truth" or self.render_mode is not None
         renderer = config.renderer if needs_images else BLIND
         config = replace(config, robot=self._robot, physics_hz=self._physics_hz, renderer=renderer)
-        return vary(config, options, stream(self._seed, "environment.options"))
+        return vary(config, self._ranges)
 
     def _perceive(self, world: SimulatedWorld) -> list[int] | None:
         """Take a snapshot, and return the ids of tracks that `LiveEpisodes.evaluate` needs."""
@@ -496,8 +500,3 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
 def _random_episode(seed: int, distribution: Distribution | None = None) -> Scenario:
     return random_scenario(seed, _RANDOM_S, distribution)
-
-
-def _resize(robot: RobotConfig, size: tuple[int, int]) -> RobotConfig:
-    """Change the image size of all cameras; vertical field of view and sharpness stay."""
-    return replace(robot, cameras={name: camera.resized(*size) for name, camera in robot.cameras.items()})

@@ -21,6 +21,7 @@ from peopleboy.scenarios.environments.rewards import (
 from peopleboy.scenarios.scores.comfort_metrics import score_comfort
 from peopleboy.scenarios.scores.corridor_metrics import legs_of, score_corridor
 from peopleboy.scenarios.scores.drive_record import TARGET, DriveRecord
+from peopleboy.scenarios.scores.episode_result import DriveScores, EpisodeResult
 from peopleboy.scenarios.scores.following_metrics import FollowingTask, Spot, score_following, track_on
 from peopleboy.sim.batch.sensing import Snapshot
 from peopleboy.sim.places.floor_plan import FloorPlan
@@ -30,6 +31,8 @@ from peopleboy.sim.truth.truth import Box
 from peopleboy.tracker.track import Track
 
 Metrics = dict[str, dict[str, float]]
+
+_END_NAMES: Final = tuple(TERMS[end] for end in ENDS)
 
 
 class EpisodeMetrics:
@@ -53,8 +56,8 @@ class EpisodeMetrics:
         """
         self._noted.append((scenes, row, track))
 
-    def metrics(self) -> Metrics:
-        """Return the groups `following`, `corridor` and `comfort` of metrics.json; NaN if undefined."""
+    def scores(self) -> DriveScores:
+        """Return the scores of the drive."""
         worlds = np.concatenate([scenes.worlds[row : row + 1] for scenes, row, _ in self._noted])
         borders = zip(worlds["first"].tolist(), worlds["end"].tolist(), strict=True)
         people = np.concatenate(
@@ -77,11 +80,11 @@ class EpisodeMetrics:
             count=counts,
             people=np.column_stack([people["position_m"], people["velocity_m_s"]]),
         )
-        return {
-            "following": asdict(score_following(drive, self._task)),
-            "corridor": asdict(score_corridor(drive, legs_of(self._plan))),
-            "comfort": asdict(score_comfort(drive)),
-        }
+        return DriveScores(
+            following=score_following(drive, self._task),
+            corridor=score_corridor(drive, legs_of(self._plan)),
+            comfort=score_comfort(drive),
+        )
 
 
 def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None, before: int) -> int:
@@ -159,6 +162,7 @@ class LiveEpisodes:
         self._plans = [np.zeros((0, 4))] * count
         self._touched: list[set[str]] = [set() for _ in range(count)]
         self._metrics: dict[int, EpisodeMetrics] = {}
+        self._terms: dict[int, list[Array]] = {}
         self._lay_out()
 
     def begin(
@@ -178,9 +182,10 @@ class LiveEpisodes:
         own["dt_s"], own["keep_m"], own["limits"] = settings.dt_s, settings.following.keep_m, settings.limits
         self._plans[number], self._touched[number] = areas_of(settings.plan), set()
         self._metrics[number] = EpisodeMetrics(settings.plan, settings.following)
+        self._terms[number] = []
         self._lay_out()
         outcomes = self.evaluate(snapshot, np.zeros((1, 2)), tracks)
-        own["is_over"] = False
+        own["is_over"], self._terms[number] = False, []
         return outcomes._replace(terms=np.zeros_like(outcomes.terms), rewards=[0.0])
 
     def evaluate(self, snapshot: Snapshot, actions: Array, tracks: Sequence[int] | None) -> StepOutcomes:
@@ -204,6 +209,7 @@ class LiveEpisodes:
             tracks = (now["seen"] & np.uint64(1)).tolist()  # whether the first person is seen
         is_noted = (now["frame"] < now["frames"]).tolist()
         for row, (number, notes) in enumerate(zip(numbers.tolist(), is_noted, strict=True)):
+            self._terms[number].append(terms[row])
             if notes:
                 self._metrics[number].add(scenes, row, tracks[row])
         return StepOutcomes(
@@ -216,8 +222,24 @@ class LiveEpisodes:
         )
 
     def metrics(self, number: int) -> Metrics:
-        """Return the metrics of an episode so far, see `EpisodeMetrics`."""
-        return self._metrics[number].metrics()
+        """Return the groups `following`, `corridor` and `comfort` of metrics.json; NaN if undefined."""
+        scores = self._metrics[number].scores()
+        groups = {"following": scores.following, "corridor": scores.corridor, "comfort": scores.comfort}
+        return {name: asdict(group) for name, group in groups.items() if group is not None}
+
+    def result(self, number: int) -> EpisodeResult:
+        """Return scores, rewards and end of an episode so far."""
+        terms = np.array(self._terms[number], np.float64).reshape(-1, len(TERMS))
+        own = self.records[number]
+        ends = (terms[-1:, ENDS] != 0.0).any(axis=0)
+        ended = next((name for name, is_it in zip(_END_NAMES, ends.tolist(), strict=True) if is_it), "")
+        return EpisodeResult(
+            task=TASKS[self._task],
+            scores=self._metrics[number].scores(),
+            terms=TERMS,
+            rewards=terms,
+            ended=ended or ("time" if own["frame"] >= own["frames"] else ""),
+        )
 
     def _compare(
         self, numbers: Numbers, scenes: Scenes, before: NDArray[np.uint64], now: NDArray[np.uint64]

@@ -21,13 +21,14 @@ from peopleboy.scenarios.files.people import PersonSpec, assign_distinct_colours
 from peopleboy.scenarios.files.recorded_drives import KEPT, Repeat, pack_drive, read_drive
 from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.scenario_file import DrawnSpec, ScenarioSpec, to_data
+from peopleboy.scenarios.files.variation import EpisodeSpec
 from peopleboy.sim.cameras.kinds import KINDS, flat_geometry
 from peopleboy.sim.physics.physics_engine import PHYSICS, PhysicsName
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.make_place import make_place
 from peopleboy.sim.places.place import Place, air_of
 from peopleboy.sim.places.place_config import lay_out
-from peopleboy.sim.world_config import WorldConfig
+from peopleboy.sim.world_config import CONTROL_HZ, WorldConfig
 from peopleboy.wording import counted
 
 RENDERERS = ("raycast", "bullet")
@@ -85,6 +86,16 @@ class Scenario:
         return self.spec.duration_s
 
     @property
+    def frames(self) -> int:
+        """Number of frames of a run."""
+        return round(self.duration_s * CONTROL_HZ) if self.episode is None else self.episode.frames
+
+    @property
+    def episode(self) -> EpisodeSpec | None:
+        """The episode of an environment that a run repeats; None for a run of its own."""
+        return None if self.spec.drawn is None else self.spec.drawn.episode
+
+    @property
     def seed(self) -> int:
         """The seed of the run that wrote this scenario file; 0 for any other file."""
         return 0 if self.spec.drawn is None else self.spec.drawn.seed
@@ -126,7 +137,7 @@ class Scenario:
         """
         if renderer not in RENDERERS:
             raise BadInput(f"unknown renderer {renderer!r}; choose from {', '.join(RENDERERS)}")
-        return WorldConfig(
+        config = WorldConfig(
             place=self.place,
             people=tuple(make_config(person) for person in self.people(seed)),
             robot=self.robot.config(),
@@ -135,6 +146,7 @@ class Scenario:
             physics=self.spec.physics,
             detail=self.spec.detail,
         )
+        return config if self.episode is None else self.episode.applied_to(config)
 
     def mounting(self, cameras: Sequence[str]) -> "Scenario":
         """Return the same scenario with these cameras mounted on the robot; new ones get default settings.
@@ -162,7 +174,15 @@ class Scenario:
 
     def lasting(self, duration_s: float) -> "Scenario":
         """Return the same scenario with another duration."""
-        return replace(self, spec=replace(self.spec, duration_s=duration_s))
+        drawn, frames = self.spec.drawn, round(duration_s * CONTROL_HZ)
+        if drawn is not None and drawn.episode is not None:
+            drawn = replace(drawn, episode=replace(drawn.episode, frames=frames))
+        return replace(self, spec=replace(self.spec, duration_s=duration_s, drawn=drawn))
+
+    def as_episode(self, seed: int, episode: EpisodeSpec | None) -> "Scenario":
+        """Return the scenario of an episode that was played with a seed, or without one."""
+        drawn = None if episode is None else DrawnSpec(seed=seed, episode=episode)
+        return replace(self, spec=replace(self.spec, drawn=drawn))
 
     def driven(self, drive: Sequence[Command]) -> "Scenario":
         """Return the same scenario with a robot that replays recorded commands."""
@@ -232,6 +252,7 @@ class Scenario:
             seed=seed,
             versions={} if versions is None else versions,
             drive=None if self.drive is None else KEPT,
+            episode=self.episode,
         )
         return to_data(replace(self.spec, people=self.people(seed), groups=(), drawn=drawn))
 

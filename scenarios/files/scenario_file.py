@@ -14,6 +14,7 @@ from pydantic import Field, TypeAdapter, with_config
 from peopleboy.scenarios.files.people import GroupSpec, PersonSpec
 from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.validation import STRICT
+from peopleboy.scenarios.files.variation import EpisodeSpec
 from peopleboy.settings import Seconds, Word
 from peopleboy.sim.physics.physics_engine import PhysicsName, default_physics
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
@@ -133,6 +134,9 @@ class DrawnSpec:
             description="file of recorded commands, in the same folder as this file; the robot repeats "
             "them, whatever its `behaviour` is"
         ),
+    ] = None
+    episode: Annotated[
+        EpisodeSpec | None, Field(description="episode of an environment that the run repeats")
     ] = None
 
 

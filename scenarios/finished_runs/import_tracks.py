@@ -166,7 +166,7 @@ def import_tracks(what: TrackImport, report: Callable[[int, int], None]) -> RunS
             folder.write(tick, [event.to_json() for event in events])
             report(tick.frame, run.frames)
         folder.flush()
-        scores = score_run(part, run.frames, following=None, boxes=what.boxes)
+        scores = score_run(part, run.frames, None, what.boxes)
         observers.save(part)
         folder.complete(scores.to_json())
     return scores

@@ -281,4 +281,7 @@ def cameras_of(folder: Path) -> Mapping[str, CameraConfig]:
     Raises:
         BadInput: the folder contains no scenario of a run.
     """
-    return load_scenario(folder / "scenario.yaml").robot.config().cameras
+    scenario = load_scenario(folder / "scenario.yaml")
+    if scenario.episode is None:
+        return scenario.robot.config().cameras
+    return scenario.world(scenario.seed).robot.cameras

@@ -25,7 +25,7 @@ def blind_drive(scenario: Scenario, seed: int) -> "Iterator[tuple[SimulatedWorld
         raise BadInput(f"{scenario.name}: its robot needs a tracker; give one that stands or is scripted")
     config, drive = scenario.world(seed), scenario.make_behaviour()
     with SimulatedWorld(config) as world:
-        for _ in range(round(scenario.duration_s * config.control_hz)):
+        for _ in range(scenario.frames):
             observation = world.observe()
             yield world, observation
             command = drive.command(_blind_percept(observation))

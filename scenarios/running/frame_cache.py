@@ -189,7 +189,7 @@ def _render(
     from peopleboy.sim.world import SimulatedWorld  # here, so that cached frames can be read without PyBullet
 
     config = scenario.world(seed)
-    count = round(scenario.duration_s * config.control_hz)
+    count = scenario.frames
     with (
         SimulatedWorld(config) as world,
         pq.ParquetWriter(part / "frames.parquet", _FRAMES, compression="zstd") as frames,

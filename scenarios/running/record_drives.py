@@ -19,7 +19,7 @@ def record(run: SuiteRun) -> Iterator[Command]:
     """Run a scenario of a suite with the contour tracker, and yield the robot's command at each step."""
     config = run.scenario.world(run.seed)
     tracker = make_tracker(CONTOUR_TRACKER, run.seed)
-    frames = round(run.scenario.duration_s * config.control_hz)
+    frames = run.scenario.frames
     with SimulatedWorld(config) as world:
         for tick in closed_loop(world, tracker, run.scenario.make_behaviour(), frames):
             yield tick.command

@@ -32,7 +32,8 @@ from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.comfort_metrics import score_comfort
 from peopleboy.scenarios.scores.contacts import ContactLog
 from peopleboy.scenarios.scores.corridor_metrics import legs_of, score_corridor
-from peopleboy.scenarios.scores.drive_record import DriveLog
+from peopleboy.scenarios.scores.drive_record import DriveLog, DriveRecord
+from peopleboy.scenarios.scores.episode_result import DriveScores, EpisodeResult
 from peopleboy.scenarios.scores.following_metrics import following_task, score_following, tracks_on_target
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.sim.world import SimulatedWorld
@@ -128,6 +129,16 @@ def run(
     scenario = load_scenario(scenario)
     if options is None:
         options = RunOptions(seed=scenario.seed, out=Path("runs") / f"{scenario.name}-{scenario.seed}")
+    return _run(scenario, options, report, None)
+
+
+def _run(
+    scenario: Scenario,
+    options: RunOptions,
+    report: Callable[[Tick, int], None],
+    episode: EpisodeResult | None,
+) -> RunScores:
+    """Run a scenario, or repeat an episode, whose scores are then those of the episode."""
     if options.seed < 0:
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
     scenario = options.applied_to(scenario)
@@ -139,7 +150,7 @@ def run(
     mounted = [camera for camera in scenario.robot.cameras if camera not in given]
     config = scenario.world(options.seed, options.renderer)
     check_cameras(tracker, config.robot.cameras)
-    frames = round(scenario.duration_s * config.control_hz)
+    frames = scenario.frames
     check_detections(name, frames)
     about = {
         "scenario": scenario.name,
@@ -152,6 +163,8 @@ def run(
         "planned_frames": frames,
         "gains": about_gains(config.robot.cameras),
     } | ({"mounted_for_tracker": mounted} if mounted else {})
+    if episode is not None:
+        about["episode"] = episode.to_json()
     if scenario.own_behaviour is not None:
         about["behaviour"] = scenario.own_behaviour
     _LOG.info(
@@ -205,15 +218,12 @@ def run(
         write_latency(options.out, checked.times_ms)
         took_s = time.monotonic() - began_s
         _LOG.info("%s: %.1f s, %.0f frames/s", scenario.name, took_s, frames / max(took_s, 1e-3))
-        drive, following, corridor, comfort = observers.drive.record(), None, None, None
-        if scenario.robot.behaviour in FOLLOWERS and config.people:
-            task = following_task(config, scenario.follow_config().keep_height)
-            following = score_following(drive, task)
-        if scenario.robot.behaviour == "follow_corridor":
-            corridor = score_corridor(drive, legs_of(scenario.plan))
-        if scenario.robot.behaviour != "stand" and config.people:
-            comfort = score_comfort(drive)
-        scores = score_run(options.out, frames, following, corridor, comfort, options.boxes, shown)
+        if episode is None:
+            drive = _score_drive(scenario, config, observers.drive.record())
+        else:
+            drive = episode.scores
+            episode.write_rewards(options.out, config.control_hz)
+        scores = score_run(options.out, frames, drive, options.boxes, shown)
         scores = replace(scores, contacts=tuple(observers.contacts.contacts))
         observers.save(options.out)
         folder.complete(scores.to_json())
@@ -221,27 +231,34 @@ def run(
     return scores
 
 
+def _score_drive(scenario: Scenario, config: WorldConfig, drive: DriveRecord) -> DriveScores:
+    """Score the robot's tasks: that of its behaviour, and comfort if it moved among people."""
+    following = corridor = comfort = None
+    if scenario.robot.behaviour in FOLLOWERS and config.people:
+        task = following_task(config, scenario.follow_config().keep_height)
+        following = score_following(drive, task)
+    if scenario.robot.behaviour == "follow_corridor":
+        corridor = score_corridor(drive, legs_of(scenario.plan))
+    if drive.has_moved and config.people:
+        comfort = score_comfort(drive)
+    return DriveScores(following, corridor, comfort)
+
+
 def save_episode(
-    scenario: Scenario, commands: Sequence[Command], frames: int, options: RunOptions, rate_hz: int
+    scenario: Scenario, commands: Sequence[Command], options: RunOptions, result: EpisodeResult
 ) -> RunScores:
     """Write an episode as a run's folder, by replaying its commands in the same world.
 
     Args:
-        scenario: scenario of the episode.
+        scenario: scenario of the episode, with its settings.
         commands: the robot's commands, one per step.
-        frames: number of images.
         options: options of the run.
-        rate_hz: steps per second.
+        result: what happened in the episode.
 
     Raises:
         BadInput: the folder cannot be written to.
     """
-    lasted_s = frames / rate_hz
-    # People who enter after the episode's end must still be able to enter; the robot waits for them.
-    latest_s = max((person.enter_s for person in scenario.people(options.seed)), default=0.0)
-    if latest_s >= lasted_s:
-        lasted_s = min(latest_s + 1.0 / rate_hz, scenario.duration_s)
-    return run(scenario.driven([*commands, STOP]).lasting(lasted_s), options, lambda _tick, _frames: None)
+    return _run(scenario.driven([*commands, STOP]), options, lambda _tick, _frames: None, result)
 
 
 def is_finished(scenario: Scenario, options: RunOptions) -> bool:

@@ -16,6 +16,9 @@ from peopleboy.sim.truth.truth import Truth
 
 TARGET = 1  # the person to follow: the scenario's first
 
+_STILL_M: Final = 0.05  # a robot with its motors off stays within this, also if it is bumped into by physics
+_STILL_RAD: Final = 0.05
+
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
@@ -62,6 +65,12 @@ class DriveRecord:
             )
         if not np.all(np.diff(self.time_s) > 0.0):
             raise BadInput("drive: time_s must increase from frame to frame")
+
+    @property
+    def has_moved(self) -> bool:
+        """Whether the robot left its place, or turned."""
+        moved = np.abs(self.robot - self.robot[0]).max(axis=0)
+        return bool(moved[:2].max() > _STILL_M or moved[2] > _STILL_RAD)
 
     @property
     def is_tracked(self) -> Flags:

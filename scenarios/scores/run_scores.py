@@ -9,6 +9,7 @@ from typing import Any, Final
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.contacts import Contact
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.episode_result import DriveScores
 from peopleboy.scenarios.scores.evaluate_runs import (
     BoxReference,
     ScoredPeople,
@@ -75,28 +76,27 @@ class RunScores:
 def score_run(
     folder: Path,
     frames: int,
-    following: FollowingScore | None,
-    corridor: CorridorScore | None = None,
-    comfort: ComfortScore | None = None,
+    drive: DriveScores | None,
     boxes: BoxKind = BoxKind.TORSO,
     tracker: str | None = None,
 ) -> RunScores:
     """Score a run from the ground truth and tracks in its folder.
 
-    `boxes` is what the tracker's boxes enclose; see `kind_of_boxes` for PeopleBoy's own trackers.
+    `drive` has the scores of the robot's tasks; `boxes` is what the tracker's boxes enclose, see
+    `kind_of_boxes` for PeopleBoy's own trackers.
     """
 
     def scored(camera: str) -> ScoredPeople:
         by = BoxReference(camera, kind_of_boxes(folder, camera, tracker, boxes))
         return score_people(folder, read_reference_boxes(folder, by), frames, by)
 
-    people = scored(own_camera(folder))
+    people, drive = scored(own_camera(folder)), drive or DriveScores()
     further = sorted(path.stem for path in (folder / "tracks").glob("*.txt"))
     return RunScores(
         people.scores,
-        following,
-        corridor,
-        comfort,
+        drive.following,
+        drive.corridor,
+        drive.comfort,
         {camera: scored(camera).scores for camera in further},
         people.by,
         people.notes,
