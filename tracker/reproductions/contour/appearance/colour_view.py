@@ -13,14 +13,17 @@ from peopleboy.tracker.reproductions.contour.appearance.colour_histograms import
 from peopleboy.tracker.reproductions.contour.appearance.regions import (
     PARTS,
     Bounds,
+    align,
     aligned,
     alignment,
     covered,
+    first_pixel_after,
+    part_rectangle,
     part_rectangles,
     pixel_bounds,
 )
 from peopleboy.tracker.reproductions.contour.colour_config import REPRESENTATIONS, ColourDescriptorConfig
-from peopleboy.tracker.reproductions.contour.particles import Floats, H
+from peopleboy.tracker.reproductions.contour.particles import D, Floats, H, W, X, Y
 
 Integers = NDArray[np.int64]
 
@@ -128,11 +131,8 @@ class ColourView:
     def means(self, state: Floats) -> Floats:
         """Return the mean (N, 3, C), 0..1, of each channel over the parts of people (N, 9); NaN outside."""
         sums = self.sums or PowerSums.build(self.picture, 1)
-        parts = sums.over(self._bounds(part_rectangles(state), state[:, H]))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            mean = parts.power[:, :, 0] * (1.0 / parts.pixels)[:, None] / WHITE
-        mean[parts.pixels < np.maximum(LEAST_SEEN * parts.area, 1)] = np.nan
-        return mean.astype(np.float32).reshape(len(state), PARTS, -1)
+        means: Floats = _part_means(state, self.alignment, sums.integral, LEAST_SEEN)
+        return means
 
     def describe_rectangles(self, rectangles: Floats, height: Floats, holes: Floats | None = None) -> Floats:
         """Describe regions of people.
@@ -242,6 +242,32 @@ def _sum_over(integral: NDArray[np.integer[Any]], bounds: Bounds) -> Integers:
         for j in range(channels * degree):
             power[i, j] = d[j] + a[j] - (b[j] + c[j])
     return power.reshape(len(bounds), channels, degree)
+
+
+# Without NumPy's rules a kernel would test every division.
+@njit(cache=True, nogil=True, error_model="numpy")
+def _part_means(
+    state: Floats, alignment: Floats, integral: NDArray[np.integer[Any]], least_seen: float
+) -> Floats:
+    """Return the first moments (N, 3, C) that `_normalised_moments` would, without arrays in between."""
+    height, width, channels = integral.shape[0] - 1, integral.shape[1] - 1, integral.shape[2]
+    means = np.empty((len(state), PARTS, channels), dtype=np.float32)
+    for i in range(len(state)):
+        x, y, w, h, d = state[i, X], state[i, Y], state[i, W], state[i, H], state[i, D]
+        for part in range(PARTS):
+            edges = align(alignment, part_rectangle(x, y, w, h, d, part), h)
+            left, top = int(first_pixel_after(edges[0])), int(first_pixel_after(edges[1]))
+            right, bottom = int(first_pixel_after(edges[2])), int(first_pixel_after(edges[3]))
+            area = max(right - left, 0) * max(bottom - top, 0)
+            left, top = min(max(left, 0), width), min(max(top, 0), height)
+            right, bottom = max(left, min(right, width)), max(top, min(bottom, height))
+            pixels = (right - left) * (bottom - top)
+            share = 1.0 / pixels if pixels > 0 and pixels >= least_seen * area else np.nan
+            for c in range(channels):
+                total = integral[bottom, right, c, 0] + integral[top, left, c, 0]
+                total -= integral[top, right, c, 0] + integral[bottom, left, c, 0]
+                means[i, part, c] = total * share / WHITE
+    return means
 
 
 # Without NumPy's rules a kernel would test every division.
