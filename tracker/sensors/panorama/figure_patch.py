@@ -59,44 +59,21 @@ class FigureMap:
         )
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath={"contract"})
 def _summed(people: Map, new: Map, covered: Map) -> Map:
     height, width = people.shape
-    sums = np.empty((height + 1, width + 1, LAYERS), np.float32)
-    sums[0], sums[:, 0] = np.float32(0.0), np.float32(0.0)
-    columns, more = np.zeros((LAYERS, width), np.float32), np.zeros((LAYERS, width), np.float32)
-    for v in range(0, height, 2):
-        _add_down(people[v], new[v], covered[v], more, columns)
-        if v + 1 < height:
-            _add_down(people[v + 1], new[v + 1], covered[v + 1], columns, more)
-            _add_along(columns, more, sums[v + 1], sums[v + 2])
-        else:
-            _add_along(columns, columns, sums[v + 1], sums[v + 1])
+    sums = np.zeros((height + 1, width + 1, LAYERS), np.float32)
+    columns = np.zeros((LAYERS, width), np.float32)
+    for v in range(height):
+        for u in range(width):
+            known = np.float32(1.0) - covered[v, u]
+            columns[PEOPLE, u] += people[v, u] * known
+            columns[NEW, u] += new[v, u] * known
+            columns[KNOWN, u] += known
+        for u in range(width):
+            for layer in range(LAYERS):
+                sums[v + 1, u + 1, layer] = sums[v + 1, u, layer] + columns[layer, u]
     return sums
-
-
-@njit(cache=True, nogil=True, fastmath={"contract"})
-def _add_down(people: Map, new: Map, covered: Map, above: Map, columns: Map) -> None:
-    """Add a row's pixels (W,) to the column sums (LAYERS, W)."""
-    of_people, of_new, of_known = columns[PEOPLE], columns[NEW], columns[KNOWN]
-    people_above, new_above, known_above = above[PEOPLE], above[NEW], above[KNOWN]
-    for u in range(len(people)):
-        known = np.float32(1.0) - covered[u]
-        of_people[u] = people_above[u] + people[u] * known
-        of_new[u] = new_above[u] + new[u] * known
-        of_known[u] = known_above[u] + known
-
-
-@njit(cache=True, nogil=True)
-def _add_along(columns: Map, more: Map, line: Map, below: Map) -> None:
-    """Accumulate two rows from the left, as each step within a row waits for the previous one."""
-    a0, b0, c0 = np.float32(0.0), np.float32(0.0), np.float32(0.0)
-    a1, b1, c1 = np.float32(0.0), np.float32(0.0), np.float32(0.0)
-    for u in range(columns.shape[1]):
-        a0, b0, c0 = a0 + columns[0, u], b0 + columns[1, u], c0 + columns[2, u]
-        a1, b1, c1 = a1 + more[0, u], b1 + more[1, u], c1 + more[2, u]
-        line[u + 1, 0], line[u + 1, 1], line[u + 1, 2] = a0, b0, c0
-        below[u + 1, 0], below[u + 1, 1], below[u + 1, 2] = a1, b1, c1
 
 
 @njit(cache=True, nogil=True)
@@ -123,7 +100,8 @@ def _patches(
             above = axis - math.atan2(ring_height - z, distance[n] - ring_radius)
             rows[j] = height - focal * math.tan(min(max(above, -1.4), 1.4))
             for i in range(ACROSS + 1):
-                _at(sums, middle - reach + i * step, rows[j], corners[j, i])
+                for layer in range(LAYERS):
+                    corners[j, i, layer] = _layer_at(sums, layer, middle - reach + i * step, rows[j])
         for j in range(UP):
             area = step * (rows[j + 1] - rows[j])
             for i in range(ACROSS):
@@ -142,23 +120,8 @@ def between(sums: Map, layer: int, left: float, right: float, top: float, bottom
 
 
 @njit(cache=True, nogil=True)
-def _at(sums: Map, x: float, y: float, reported: Floats) -> None:
-    """Interpolate sums between corners, constant above and below the image."""
-    width = sums.shape[1] - 1
-    turns = math.floor(x / width)
-    x -= turns * width
-    y = min(max(y, 0.0), sums.shape[0] - 1.0)
-    i, j = min(int(x), width - 1), min(int(y), sums.shape[0] - 2)
-    a, b = x - i, y - j
-    for layer in range(LAYERS):
-        upper = (1.0 - a) * sums[j, i, layer] + a * sums[j, i + 1, layer] + turns * sums[j, width, layer]
-        lower = (1.0 - a) * sums[j + 1, i, layer] + a * sums[j + 1, i + 1, layer]
-        lower += turns * sums[j + 1, width, layer]
-        reported[layer] = (1.0 - b) * upper + b * lower
-
-
-@njit(cache=True, nogil=True)
 def _layer_at(sums: Map, layer: int, x: float, y: float) -> float:
+    """Interpolate a layer's sum between corners, constant above and below the image."""
     width = sums.shape[1] - 1
     turns = math.floor(x / width)
     x -= turns * width
