@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pybullet
 import pytest
@@ -262,6 +263,7 @@ def test_environments_that_are_dropped_or_fail_to_reset_free_their_worlds(
 EVENT = '{{"frame": 1, "time_s": {}, "kind": {}, "who": "x"}}\n'
 TAMPERED: dict[str, tuple[str, Callable[[Path], object]]] = {
     "short table": ("robot.parquet", lambda path: pq.write_table(pq.read_table(path).slice(0, 3), path)),
+    "part of a box": ("tracks.parquet", lambda path: empty(path, "width_px")),
     "not UTF-8": ("metrics.json", lambda path: path.write_bytes(b"\xff\xfe{}")),
     "nested metrics": ("metrics.json", lambda path: path.write_text("[" * 100_000)),
     "kind of event": ("events.jsonl", lambda path: path.write_text(EVENT.format("0.0", "3"))),
@@ -272,6 +274,13 @@ TAMPERED: dict[str, tuple[str, Callable[[Path], object]]] = {
     "boxes": ("run.json", lambda path: tamper(path, "boxes", {"a": 1})),
 }
 """What is wrong: the file, and how to make it so."""
+
+
+def empty(path: Path, column: str) -> None:
+    """Remove the values of a column of a table."""
+    table = pq.read_table(path)
+    at = table.column_names.index(column)
+    pq.write_table(table.set_column(at, table.schema.field(at), pa.nulls(len(table), pa.float64())), path)
 
 
 def tamper(path: Path, key: str, value: Any) -> None:
@@ -303,5 +312,5 @@ def test_a_run_whose_files_were_changed_is_refused(
 ) -> None:
     run = toy.write_run(tmp_path / "run")
     change(run / name)
-    command = "report" if name == "events.jsonl" else "evaluate"
+    command = "report" if name in ("events.jsonl", "tracks.parquet") else "evaluate"
     assert name in refusal(capsys, command, run)

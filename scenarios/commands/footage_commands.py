@@ -93,7 +93,8 @@ def track(
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.tracker.footage.grey import parse_scale
 
-    tracker = given.tracker or (DEFAULT_TRACKER if rgbd.depth is None else RGBD_TRACKER)
+    usual = DEFAULT_TRACKER if rgbd.depth is None else RGBD_TRACKER
+    tracker = usual if given.tracker is None else given.tracker
     options = given.make(
         footage=footage,
         **files.values,

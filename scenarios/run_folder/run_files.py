@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.run_tables import (
+    EMPTY_TOGETHER,
     LOCAL,
     MAY_BE_EMPTY,
     PLACE,
@@ -202,6 +203,11 @@ def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Ta
     for name in columns:
         if table[name].null_count and name not in MAY_BE_EMPTY:
             raise BadInput(f"{path}: column {name!r} has rows without a value; {_AGAIN}")
+    for group in EMPTY_TOGETHER:
+        first, *others = [name for name in group if name in table.column_names] or [""]
+        for name in others:
+            if not table[name].is_null().equals(table[first].is_null()):
+                raise BadInput(f"{path}: {first!r} and {name!r} must be empty in the same rows; {_AGAIN}")
     return table
 
 

@@ -237,6 +237,9 @@ MAY_BE_EMPTY = frozenset(
 )
 """Columns that are empty if there is no person or object."""
 
+EMPTY_TOGETHER = (*(tuple(box(prefix, "box")) for prefix in ("", "whole_", "visible_")), PLACE)
+"""Columns that are empty in the same rows."""
+
 
 def truth_rows(tick: Tick, camera: str = "thermal") -> list[Row]:
     """Return the rows of a camera's truth table for one tick: one per person present."""

@@ -1,11 +1,14 @@
 """The one error that a user's mistake raises, in every room of the project."""
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 _LONGEST_KEY = 40  # letters shown of a key
-_LONGEST = 500  # letters of a message
-_START, _END = 300, 150  # letters shown of a longer message
+_LONGEST_WORD = re.compile(r"\S{300,}")
+_LONGEST = 500  # letters of a line
+_START, _END = 300, 150  # letters shown of a longer line
+_WORD_START, _WORD_END = 100, 50  # letters shown of a longer word
 
 Key = tuple[str | int, ...]
 """Steps from the top of a file to a value in it, such as ("people", 0, "path", 1, "at_m")."""
@@ -29,7 +32,8 @@ class BadInput(ValueError):  # noqa: N818
 
     def __str__(self) -> str:
         """Return one line with file, key and reason."""
-        return shortened(": ".join(part for part in (self.file, dotted(self.key), self.reason) if part))
+        whole = ": ".join(part for part in (self.file, dotted(self.key), self.reason) if part)
+        return _LONGEST_WORD.sub(lambda word: f"{word[0][:_WORD_START]}...{word[0][-_WORD_END:]}", whole)
 
     def within(self, *steps: str | int, file: str = "") -> "BadInput":
         """Return the same error with a longer key, whose first steps are these.
@@ -48,9 +52,8 @@ def dotted(key: Key) -> str:
     return text.removeprefix(".")
 
 
-def shortened(message: str) -> str:
-    """Return a message as one line, a long one without its middle: its end says what would be right."""
-    line = " ".join(message.split("\n"))
+def shortened(line: str) -> str:
+    """Return a line, a long one without its middle: its start says where, its end what would be right."""
     return line if len(line) < _LONGEST else f"{line[:_START]} ... {line[-_END:]}"
 
 

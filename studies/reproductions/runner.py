@@ -71,6 +71,8 @@ def reproduce(
         BadInput: the folder or the cluster cannot be used, or no experiment is finished.
         TasksFailed: some units failed, after all others were completed.
     """
+    if so_far and not (means.out / RESULTS).is_file():
+        raise BadInput(f"{means.out / RESULTS}: no table or figure is finished there")
     store = open_store(means.out / RESULTS)
     known, failures = ({}, []) if so_far else work_off(experiments, plan, store, means.workers)
     outcomes, missing = finished(experiments, plan, store, known)
