@@ -4,7 +4,7 @@ import sys
 import sysconfig
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
@@ -141,7 +141,8 @@ def traceback_to(path: Path) -> Iterator[None]:
     Raises:
         OwnCodeFailed: it was raised in the block.
     """
-    path.unlink(missing_ok=True)
+    with suppress(NotADirectoryError):  # of an output path that is refused later
+        path.unlink(missing_ok=True)
     with traceback_in(path):
         try:
             yield
