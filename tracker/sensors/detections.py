@@ -11,6 +11,7 @@ from peopleboy.tracker.boxes import area, cover, intersection
 
 Floats = NDArray[np.float64]
 
+# The shipped networks were trained on detections that these numbers left: others need new training.
 SHARED: Final = 0.65  # share of the smaller box from which two boxes show one person
 _ALIKE: Final = 0.5  # IoU of boxes that are averaged
 _TOUCHED: Final = 0.12  # least share of a box overlapped by its left, and by its right neighbour

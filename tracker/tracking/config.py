@@ -146,7 +146,7 @@ class ReidentificationConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExistenceConfig:
-    """When a track exists, by log-odds that add up over images.
+    """When a track exists, by log-odds that add up over images, and what is remembered of it.
 
     Attributes:
         weakest: least score of detections that are used.
@@ -177,6 +177,10 @@ class ExistenceConfig:
         forget_s: a track unseen for so long is deleted.
         brief_s: a track observed for less time is brief.
         brief_forget_s: a brief track is deleted sooner.
+        taken: overlap with a track at which a detection initiates no other one.
+        learning: weight of a new image in the remembered appearance, width and confidence.
+        learning_recent: the same in the recent colours that are compared with it.
+        own_colours: Bhattacharyya coefficient above which recent colours are the person's own.
     """
 
     weakest: float = -2.0
@@ -203,6 +207,10 @@ class ExistenceConfig:
     forget_s: float = 10.0
     brief_s: float = 1.0
     brief_forget_s: float = 2.0
+    taken: float = 0.45
+    learning: float = 0.1
+    learning_recent: float = 0.2
+    own_colours: float = 0.7
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -48,7 +48,6 @@ from peopleboy.tracker.tracking.viewpoint import Position
 
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
-_TAKEN: Final = 0.45  # overlap with a track at which a detection does not initiate a track
 
 
 class PeopleTracker:
@@ -357,7 +356,7 @@ class PeopleTracker:
         is_free[list(found.values())] = False
         recent = np.array([target.seen_s > time_s - lost_s for target in self._targets], bool)
         if recent.any():
-            is_free &= (iou(detections.boxes[:, None], boxes[recent][None]) < _TAKEN).all(axis=1)
+            is_free &= (iou(detections.boxes[:, None], boxes[recent][None]) < existence.taken).all(axis=1)
         if not detections.is_masked:
             is_mixed = shared_area(detections.boxes, self._known(found)) > CLEAR
             detections = detections.without_colours(is_mixed)
@@ -369,7 +368,7 @@ class PeopleTracker:
         detections = next((one for one in given if one is not None), None)
         if detections is None:
             return
-        kept = np.flatnonzero(iou(detections.expected, box[None]) < _TAKEN)
+        kept = np.flatnonzero(iou(detections.expected, box[None]) < detections.settings.existence.taken)
         self._keep(kept)
         self._add(np.zeros(1, int), detections, frame.time_s)
         self._confirm(self._targets[-1], -math.inf)  # a hint is certain

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,10 +10,6 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.tracking.appearance import FEATURES, Colours, Pattern, blend_colours, colour_similarity
 from peopleboy.tracker.tracking.config import ExistenceConfig
-
-_LEARNING: Final = 0.1  # share of the new appearance in the remembered one
-_LEARNING_SOON: Final = 0.2  # the same in the recent appearance that is compared with it
-_OWN: Final = 0.7  # Bhattacharyya coefficient above which a person resembles their own earlier appearance
 
 
 class DetectionEvidence(NamedTuple):
@@ -108,7 +104,7 @@ class TrackState:
         sum_of_both = self.log_odds + evidence * independent_per_s * dt_s
         evidence_gain = self.log_odds + config.evidence_gain * (evidence - self.log_odds)
         self.log_odds = min(max(sum_of_both, evidence_gain, -config.highest), config.highest)
-        self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-seen.score)) - self.confidence)
+        self.confidence += config.learning * (1.0 / (1.0 + math.exp(-seen.score)) - self.confidence)
 
     def is_lost(self, time_s: float, lost_s: float) -> bool:
         """Return whether a confirmed track has not been detected for some time."""
@@ -118,7 +114,7 @@ class TrackState:
         """Update the box (4,) in a camera's image and, if measured, the width relative to the height."""
         self.shown[camera] = self.seen_s, box
         if has_width:
-            self.ratio += _LEARNING * (float(box[2] / box[3]) - self.ratio)
+            self.ratio += self.existence.learning * (float(box[2] / box[3]) - self.ratio)
 
     def mark_separate(self, time_s: float, dt_s: float) -> None:
         """Record that the person is seen apart from others now, by one sensor or several."""
@@ -127,11 +123,12 @@ class TrackState:
 
     def update_appearance(self, pattern: Pattern, colours: Colours) -> None:
         """Update the appearance of a person who is seen apart from others."""
+        config = self.existence
         if pattern.any():
-            self.pattern = self.pattern + np.float32(_LEARNING) * (pattern - self.pattern)
-        self.recent = blend_colours(self.recent, colours, _LEARNING_SOON)
-        if not self.colours.any() or colour_similarity(self.recent, self.colours) > _OWN:
-            self.colours = blend_colours(self.colours, colours, max(_LEARNING, 1.0 / self.sightings))
+            self.pattern = self.pattern + np.float32(config.learning) * (pattern - self.pattern)
+        self.recent = blend_colours(self.recent, colours, config.learning_recent)
+        if not self.colours.any() or colour_similarity(self.recent, self.colours) > config.own_colours:
+            self.colours = blend_colours(self.colours, colours, max(config.learning, 1.0 / self.sightings))
 
     def mark_overlapping(self) -> None:
         """Record that the person is not seen apart from others now."""
@@ -141,8 +138,9 @@ class TrackState:
         """Continue a lost track as this one."""
         self.id, self.born_s = before.id, before.born_s
         self.confirmed_s = min(self.confirmed_s, before.confirmed_s)
-        self.colours = blend_colours(before.colours, self.colours, _LEARNING)
-        self.pattern = before.pattern + np.float32(_LEARNING) * (self.pattern - before.pattern)
+        learning = self.existence.learning
+        self.colours = blend_colours(before.colours, self.colours, learning)
+        self.pattern = before.pattern + np.float32(learning) * (self.pattern - before.pattern)
         self.watched_s += before.watched_s
         self.log_odds = max(self.log_odds, before.log_odds)
         before.id, before.seen_s = 0, -math.inf

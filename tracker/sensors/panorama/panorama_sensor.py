@@ -31,11 +31,8 @@ from peopleboy.tracker.tracking.sensor import (
     no_appearance,
 )
 
-NEAREST_M: Final = 0.5
-_FARTHEST_BOX_M: Final = 7.5
 _AROUND: Final = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)], np.float64)
-_PERSON: Final = 0.5  # foreground probability of a person's pixels
-_MIDDLE: Final = 0.6  # share of the width of a box from which colours are taken
+_CENTRE_M: Final = 0.5  # a box has no size at the robot's centre
 _HEAD_SD_M: Final = 10.0  # the height of a head is not measured
 
 
@@ -57,8 +54,12 @@ class PanoramaSensorConfig:
         blind: covered share of the body from which a person cannot be detected.
         forgotten: log-odds of a track below which it is not searched for.
         newcomers: number of positions searched per image for new people.
+        nearest_m: least distance of people [m].
         farthest_m: greatest distance of new people [m].
+        tracked_m: the same of tracked people [m].
         apart_m: least distance of a new person from others [m].
+        foreground: probability from which a pixel shows a person.
+        described: share of a box's width from which colours are taken.
     """
 
     neutral: float = 2.0
@@ -71,8 +72,12 @@ class PanoramaSensorConfig:
     blind: float = 0.7
     forgotten: float = -0.4
     newcomers: int = 3
+    nearest_m: float = 0.5
     farthest_m: float = 7.0
+    tracked_m: float = 7.5
     apart_m: float = 0.4
+    foreground: float = 0.5
+    described: float = 0.6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,7 +193,7 @@ class PanoramaSensor:
         if not isinstance(calibration, PanoramaCalibration) or predicted.origin_m is None:
             return None
         polar = _polar(predicted.places_m)
-        is_near = polar[:, 1] < _FARTHEST_BOX_M
+        is_near = polar[:, 1] < self._config.tracked_m
         return ProjectedBoxes(_boxes(polar, calibration), is_near)
 
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
@@ -224,7 +229,8 @@ class PanoramaSensor:
         places = predicted.places_m
         polar = _polar(places)
         for row in np.argsort(polar[:, 1], kind="stable").tolist():
-            if predicted.log_odds[row] <= self._config.forgotten or polar[row, 1] > _FARTHEST_BOX_M:
+            is_forgotten = predicted.log_odds[row] <= self._config.forgotten
+            if is_forgotten or polar[row, 1] > self._config.tracked_m:
                 continue
             if scene.hidden_share(*polar[row].tolist()) >= self._config.blind:
                 continue
@@ -263,18 +269,28 @@ class PanoramaSensor:
         if one is None or one[2] < self._config.least_evidence:
             return None
         bearing, distance, evidence, deviation = one
-        return _Located(evidence, bearing, distance, deviation, _describe(scene, bearing, distance))
+        return _Located(evidence, bearing, distance, deviation, self._describe(scene, bearing, distance))
 
     def _best(self, scene: PanoramaScene, polar: Floats) -> tuple[float, float, float, Floats] | None:
         reported = self._model.look(scene.figures.patches(polar[:, 0], polar[:, 1]), polar[:, 1])
         best = int(np.argmax(reported.evidence))
         along, across = reported.offset_m[best].tolist()
         bearing, distance = polar[best].tolist()
-        if distance + along < NEAREST_M:
+        if distance + along < self._config.nearest_m:
             return None
         bearing, distance = bearing + across / distance, distance + along
         deviation = self._config.error_share * reported.deviation_m[best].astype(np.float64)
         return bearing, distance, float(reported.evidence[best]), deviation
+
+    def _describe(self, scene: PanoramaScene, bearing_rad: float, distance_m: float) -> Colours:
+        """Return the colours (FEATURES,) of the person at a position, from uncovered foreground pixels."""
+        left, top, width, height = scene.box(bearing_rad, distance_m)
+        inset = (1.0 - self._config.described) / 2.0 * width
+        rows = np.arange(max(round(top), 0), min(round(top + height), scene.image.shape[0]))
+        columns = np.arange(round(left + inset), round(left + width - inset) + 1) % scene.image.shape[1]
+        at = np.ix_(rows, columns)
+        v, u = np.nonzero((scene.foreground[at] > self._config.foreground) & (scene.covered[at] == 0.0))
+        return describe_samples(scene.image[at][v, u], (rows[v] + 0.5 - top) / height)
 
     def _detections(
         self,
@@ -314,18 +330,6 @@ class PanoramaSensor:
         )
 
 
-def _describe(scene: PanoramaScene, bearing_rad: float, distance_m: float) -> Colours:
-    """Return the colours (FEATURES,) of the person at a position, from uncovered foreground pixels."""
-    left, top, width, height = scene.box(bearing_rad, distance_m)
-    inset = (1.0 - _MIDDLE) / 2.0 * width
-    rows = np.arange(max(round(top), 0), min(round(top + height), scene.image.shape[0]))
-    columns = np.arange(round(left + inset), round(left + width - inset) + 1) % scene.image.shape[1]
-    at = np.ix_(rows, columns)
-    own = (scene.foreground[at] > _PERSON) & (scene.covered[at] < _PERSON)
-    v, u = np.nonzero(own)
-    return describe_samples(scene.image[at][v, u], (rows[v] + 0.5 - top) / height)
-
-
 def _error(one: _Located) -> Floats:
     """Return the covariance (2, 2) of a position in the robot frame."""
     cosine, sine = math.cos(one.bearing_rad), math.sin(one.bearing_rad)
@@ -343,7 +347,7 @@ def _spread(states: StateEstimates, row: int) -> Floats:
 def _polar(places_m: Floats) -> Floats:
     """Return bearings [rad] and distances [m] (K, 2) of positions (K, 2) in the robot frame."""
     x, y = places_m.T
-    return np.column_stack([np.arctan2(y, x), np.maximum(np.hypot(x, y), NEAREST_M)])
+    return np.column_stack([np.arctan2(y, x), np.maximum(np.hypot(x, y), _CENTRE_M)])
 
 
 def _boxes(polar: Floats, calibration: PanoramaCalibration) -> Floats:
