@@ -27,6 +27,7 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.recorded_drives import pack_drive, read_drive
 from peopleboy.sim.physics.urdf import read_links, read_urdf
+from peopleboy.tracker.footage.read_picture import read_picture
 from peopleboy.tracker.tracker_names import with_detector
 from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.calls.command_line import refusal, run_cli
@@ -124,9 +125,24 @@ def test_pipes_and_long_names_are_refused_before_they_are_read(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     os.mkfifo("f.yaml")
-    for path in ("f.yaml", "/dev/zero", LONG, f"{LONG}.yaml"):
+    for path in ("f.yaml", "/dev/zero", "\udcff", LONG, f"{LONG}.yaml"):
         assert len(refusal(capsys, *(word.format(path) for word in call))) < 500
     assert [path.name for path in tmp_path.iterdir()] == ["f.yaml"]
+
+
+def test_a_run_may_be_in_a_folder_that_could_be_an_address(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("a:b", "s3:/x/y"):
+        assert run_cli("evaluate", toy.write_run(Path(name))) == 0
+
+
+def test_a_picture_may_be_no_pipe(tmp_path: Path) -> None:
+    path = tmp_path / "000001.png"
+    os.mkfifo(path)
+    with pytest.raises(BadInput, match="is a pipe or a device"):
+        read_picture(path, [])
 
 
 def test_a_file_of_detections_may_be_no_pipe(tmp_path: Path) -> None:

@@ -51,8 +51,10 @@ class PlainPath(click.Path):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """Convert a value to a path."""
-        path = Path(str(super().convert(value, param, ctx)))
+        path = Path(value)
         try:
+            path = Path(str(super().convert(value, param, ctx)))
+            str(path).encode()  # as text of another encoding cannot be written to run.json
             path.resolve()  # finds links in a ring
             is_other = path.exists() and not (path.is_file() or path.is_dir())
         except (OSError, ValueError, RuntimeError) as error:

@@ -112,7 +112,7 @@ def _faults(look: _Look, frames: Sequence[int]) -> Iterator[str]:
 
 def _check_shares(run: Path) -> list[str]:
     table = pq.read_table(
-        run / "truth.parquet",
+        (run / "truth.parquet").absolute(),
         columns=["frame", "visible_fraction", "hidden_by", "whole_px"],
         filesystem=LOCAL,
     )
@@ -126,7 +126,9 @@ def _check_shares(run: Path) -> list[str]:
 
 
 def _check_boxes(run: Path) -> list[str]:
-    table = pq.read_table(run / "truth.parquet", filters=[("visible_px", ">", 0)], filesystem=LOCAL)
+    table = pq.read_table(
+        (run / "truth.parquet").absolute(), filters=[("visible_px", ">", 0)], filesystem=LOCAL
+    )
     inner, outer = (
         np.array([table[f"{which}_{edge}_px"].to_numpy() for edge in ("left", "top", "width", "height")])
         for which in ("visible", "whole")

@@ -59,7 +59,7 @@ def read_drive(path: Path) -> tuple[Command, ...]:
         BadInput: the file cannot be read as a drive.
     """
     try:
-        table = pq.read_table(path, schema=_STEPS)
+        table = pq.read_table(path.absolute(), schema=_STEPS)
     except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
         reason = " ".join(str(error).split())[:120]
         raise BadInput(f"{path}: cannot be read as a recorded drive: {reason}") from error

@@ -180,7 +180,9 @@ def true_events(run: FinishedRun) -> list[TrueEvent]:
     path = run.folder / "truth" / "things.parquet"
     if not lines or not path.is_file():
         return []
-    table = pq.read_table(path, columns=["frame", "name", "x_m", "y_m"], filesystem=LOCAL).to_pylist()
+    table = pq.read_table(
+        path.absolute(), columns=["frame", "name", "x_m", "y_m"], filesystem=LOCAL
+    ).to_pylist()
     places: dict[str, list[tuple[int, Spot]]] = defaultdict(list)
     for row in table:
         places[row["name"]].append((row["frame"], (row["x_m"], row["y_m"])))

@@ -190,14 +190,14 @@ def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Ta
         BadInput: the table is missing, damaged, or of a version with other columns.
     """
     try:
-        found = pq.read_schema(path, filesystem=LOCAL)
+        found = pq.read_schema(path.absolute(), filesystem=LOCAL)
         for name in columns:
             if name not in found.names:
                 raise BadInput(f"{path}: has no column {name!r}; {_AGAIN}")
             was, must = found.field(name).type, schema.field(name).type
             if was != must:
                 raise BadInput(f"{path}: column {name!r} must be {must}, got {was}; {_AGAIN}")
-        table = pq.read_table(path, columns=list(columns), filesystem=LOCAL)
+        table = pq.read_table(path.absolute(), columns=list(columns), filesystem=LOCAL)
     except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
         raise BadInput(f"{path}: cannot be read as a table of a run; {_AGAIN}") from error
     for name in columns:

@@ -282,7 +282,7 @@ def odometry_pose(row: Mapping[str, Any]) -> Pose2:
 
 
 LOCAL: Final = LocalFileSystem()
-"""Without it, pyarrow takes a relative path with a colon for a URI."""
+"""Without it, and with relative paths, pyarrow takes a path with a colon for a URI."""
 
 _BLOCK_ROWS: Final = 512
 _GROUP_ROWS: Final = 8192
@@ -336,7 +336,7 @@ class TableFile:
 
     def _write_group(self) -> None:
         if self._writer is None:
-            self._writer = pq.ParquetWriter(str(self._part), self._schema, filesystem=LOCAL)
+            self._writer = pq.ParquetWriter(str(self._part.absolute()), self._schema, filesystem=LOCAL)
         self._writer.write_table(pa.concat_tables(self._blocks).combine_chunks())
         self._blocks = []
 
@@ -381,7 +381,7 @@ def recover_tables(folder: Path, cameras: Iterable[str]) -> int:
     """
     log, robot = folder / _LOG, folder / ROBOT_TABLE
     if not log.is_file():
-        return pq.read_metadata(robot, filesystem=LOCAL).num_rows if robot.is_file() else 0
+        return pq.read_metadata(robot.absolute(), filesystem=LOCAL).num_rows if robot.is_file() else 0
     tables, frames = _table_files(folder, cameras), 0
     with log.open("rb") as file:
         for rows in msgpack.Unpacker(file):  # ends before a record that is incomplete

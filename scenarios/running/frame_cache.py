@@ -81,7 +81,7 @@ class Film:
 
     def people(self) -> pa.Table:
         """Read the whole ground truth: one row per frame and person (`run_folder.run_tables.TRUTH`)."""
-        return pq.read_table(self.folder / "truth.parquet")
+        return pq.read_table((self.folder / "truth.parquet").absolute())
 
 
 def film(
@@ -144,7 +144,7 @@ def frames_of(shot: Film, cameras: Collection[str] = SEEN) -> Iterator[Frame]:
     """
     wanted = {camera: shape for camera, shape in shot.shapes.items() if camera in cameras}
     columns = ["time_s", *MOTION, *wanted]
-    file = pq.ParquetFile(shot.folder / "frames.parquet")
+    file = pq.ParquetFile((shot.folder / "frames.parquet").absolute())
     for batch in file.iter_batches(batch_size=_GROUP, columns=columns):
         for row in batch.to_pylist():
             images = {camera: _unpack(row[camera], shape) for camera, shape in wanted.items()}
@@ -192,8 +192,8 @@ def _render(
     count = scenario.frames
     with (
         SimulatedWorld(config) as world,
-        pq.ParquetWriter(part / "frames.parquet", _FRAMES, compression="zstd") as frames,
-        pq.ParquetWriter(part / "truth.parquet", TRUTH, compression="zstd") as truth,
+        pq.ParquetWriter((part / "frames.parquet").absolute(), _FRAMES, compression="zstd") as frames,
+        pq.ParquetWriter((part / "truth.parquet").absolute(), TRUTH, compression="zstd") as truth,
         (part / "gt.txt").open("w", encoding="utf-8", newline="\n") as boxes,
     ):
         before = None

@@ -59,4 +59,4 @@ class EpisodeResult:
         columns = {"step": step, "time_s": step / rate_hz}
         columns |= {name: self.rewards[:, k] for k, name in enumerate(self.terms)}
         columns["reward"] = self.rewards.sum(axis=1)
-        pq.write_table(pa.table(columns), folder / REWARDS)
+        pq.write_table(pa.table(columns), (folder / REWARDS).absolute())

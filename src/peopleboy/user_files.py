@@ -10,18 +10,14 @@ MOST_BYTES: Final = 256_000_000
 """Largest text file that is read: about four million lines of boxes."""
 
 
-def check_readable(path: Path, most_bytes: int = MOST_BYTES) -> None:
-    """Refuse a pipe, a device and a file that is too large, as reading them may never end.
+def check_plain(path: Path) -> None:
+    """Refuse a pipe and a device, as reading them may never end.
 
     Raises:
         BadInput: the path is one of these.
-        OSError: the path cannot be examined.
     """
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise BadInput("is a pipe or a device; give a file", file=str(path))
-    size = path.stat().st_size
-    if size > most_bytes:
-        raise BadInput(f"has {size} bytes; at most {most_bytes} are read", file=str(path))
 
 
 def read_text(path: Path, encoding: str = "utf-8") -> str:
@@ -32,7 +28,10 @@ def read_text(path: Path, encoding: str = "utf-8") -> str:
         OSError: the file cannot be read.
         UnicodeDecodeError: the file is not text.
     """
-    check_readable(path)
+    check_plain(path)
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        raise BadInput(f"has {size} bytes; at most {MOST_BYTES} are read", file=str(path))
     return path.read_text(encoding=encoding)
 
 

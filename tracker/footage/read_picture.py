@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from peopleboy.bad_input import BadInput
+from peopleboy.user_files import check_plain
 from peopleboy.wording import counted
 
 Raw = NDArray[Any]  # (H, W) uint8, uint16 or float32, or (H, W, 3) uint8 RGB
@@ -90,6 +91,7 @@ def _alike(pictures: Iterable[tuple[str, Raw]]) -> Iterator[Raw]:
 @contextmanager
 def _opened(path: Path) -> Iterator[Image.Image]:
     """Open a picture; errors describe the problem in one line."""
+    check_plain(path)
     try:
         with Image.open(path) as image:
             yield image
