@@ -1,8 +1,7 @@
 """Depth order of people, predicted before the image is measured."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,17 +65,12 @@ def _unlikeness(person: TrackedPerson, features: Floats) -> float:
     return 0.0 if np.isnan(distance) else distance
 
 
-class Order(Protocol):
-    """Compares people in depth."""
+Order = Callable[[Sequence[ExpectedPerson], FrameView], Leads]
+"""Compares M people in depth.
 
-    def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
-        """Return which of M people is in front of which.
-
-        Returns:
-            (M, M) lead of the row's person over the column's: positive if in front, negative if behind; 0 if
-            they do not overlap, or the order is unknown.
-        """
-        ...
+It returns the (M, M) lead of the row's person over the column's: positive if in front, negative if behind; 0
+if they do not overlap, or the order is unknown.
+"""
 
 
 def lower_foot(figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:  # noqa: ARG001

@@ -1,8 +1,7 @@
-"""Interface of the policies for occluded and lost people, and the thesis's policy."""
+"""Policies for occluded and lost people: that of the thesis, and the choice of one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,55 +104,8 @@ class StayBehind:
         return person.hidden_s <= FORGET_S
 
 
-class OcclusionPolicy(Protocol):
-    """Policy for people who are not visible: their assumed state, and when it starts and ends."""
-
-    def motion_of(self, person: TrackedPerson) -> MotionConfig:
-        """Return the motion model of a person's samples."""
-        ...
-
-    def keeps_off(self, person: TrackedPerson) -> bool:
-        """Return whether a person's samples are penalised for overlaps with others."""
-        ...
-
-    def judge(
-        self,
-        person: TrackedPerson,
-        belief: Belief,
-        surroundings: OrderContext,
-        view: FrameView,
-        rng: np.random.Generator,
-    ) -> TrackedPerson:
-        """Return a person's status after its samples were weighed, and its assumed state."""
-        ...
-
-    def searches(self, person: TrackedPerson) -> bool:
-        """Return whether an occluded person's samples keep searching."""
-        ...
-
-    def remembers_lost(self, person: TrackedPerson) -> bool:
-        """Return whether a person who is lost without an occluder is remembered."""
-        ...
-
-    def whereabouts(
-        self, person: TrackedPerson, others: Sequence[TrackedPerson], view: FrameView
-    ) -> NDArray[np.float64]:
-        """Return the assumed state (9,) of a person who is no longer searched for."""
-        ...
-
-    def can_compare(self, found: TrackedPerson, lost: TrackedPerson) -> bool:
-        """Return whether enough of a newly found person is visible for comparison with a lost one."""
-        ...
-
-    def recognised(
-        self, found: TrackedPerson, lost: Sequence[TrackedPerson], view: FrameView
-    ) -> TrackedPerson | None:
-        """Return the lost person who matches a newly found one, or None."""
-        ...
-
-    def is_shown(self, person: TrackedPerson, region: Regions, view: FrameView) -> bool:
-        """Return whether an occluded person, assumed in a region (4,) [px] of the image, is output."""
-        ...
+OcclusionPolicy = StayBehind | WalkOn
+"""Policy for people who are not visible: their assumed state, and when it starts and ends."""
 
 
 def make_policy(config: TrackerConfig) -> OcclusionPolicy:
