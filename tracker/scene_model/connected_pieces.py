@@ -1,16 +1,27 @@
 """Connected components of an image, by depth and by the time of change."""
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from peopleboy.tracker.scene_model.scene import Labels, Metres
 
 Bools = NDArray[np.bool_]
 Pixels = NDArray[np.intp]
 """(N,) flat indices."""
+
+_ALL, _TO, _FROM = slice(None), slice(1, None), slice(None, -1)
+_NEIGHBOURS: Final = (
+    ((_ALL, _TO), (_ALL, _FROM)),
+    ((_TO, _TO), (_FROM, _FROM)),
+    ((_TO, _ALL), (_FROM, _ALL)),
+    ((_TO, _FROM), (_FROM, _TO)),
+)
+"""Pixels, and those to the left of them, and above to the left, in the middle and to the right."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,11 +49,23 @@ def pieces_of(
     Returns:
         (H, W) labels from 1 on, 0 outside; and the number of components.
     """
-    nothing = np.zeros((1, 1), np.float32)
-    first, last, slack = (
-        (nothing, nothing, -1.0) if span is None else (span.first_s, span.last_s, span.slack_s)
-    )
-    labels, count = _label(mask, depth_m, np.float32(gap_m), first, last, np.float32(slack))
+    number = np.full(mask.shape, -1, np.int32)
+    number[mask] = np.arange(np.count_nonzero(mask))
+    pairs = []
+    for here, there in _NEIGHBOURS:
+        nearer = np.float64(np.float32(gap_m)) * np.maximum(depth_m[here].astype(np.float64) / 4.0, 1.0)
+        is_one = mask[here] & mask[there] & (np.abs(depth_m[here] - depth_m[there]) <= nearer)
+        if span is not None:
+            first = np.maximum(span.first_s[here], span.first_s[there])
+            last = np.minimum(span.last_s[here], span.last_s[there])
+            is_one &= first <= last + np.float32(span.slack_s)
+        pairs.append((number[here][is_one], number[there][is_one]))
+    rows, columns = (np.concatenate(side) for side in zip(*pairs, strict=True))
+    nodes = int(np.count_nonzero(mask))
+    graph = coo_array((np.ones(len(rows), np.int8), (rows, columns)), shape=(nodes, nodes))
+    count, component = connected_components(graph, directed=False)
+    labels = np.zeros(mask.shape, np.int32)
+    labels[mask] = component + 1
     return labels, int(count)
 
 
@@ -53,65 +76,3 @@ def pixels_by_label(labels: Labels, count: int) -> list[tuple[int, Pixels]]:
     order = inside[np.argsort(flat[inside], kind="stable")]
     ends = np.cumsum(np.bincount(flat[inside], minlength=count + 1))
     return list(enumerate(np.split(order, ends[:-1])))[1:]
-
-
-@njit(cache=True, nogil=True)
-def _root(parent, k):  # type: ignore[no-untyped-def]
-    while parent[k] != k:
-        parent[k] = parent[parent[k]]
-        k = parent[k]
-    return k
-
-
-@njit(cache=True, nogil=True)
-def _belongs(depth, gap, first, last, slack, a, b):  # type: ignore[no-untyped-def]
-    """Return whether two neighbouring pixels are connected."""
-    if abs(depth[a] - depth[b]) > gap * max(1.0, depth[a] / 4.0):
-        return False
-    return slack < 0.0 or max(first[a], first[b]) <= min(last[a], last[b]) + slack
-
-
-@njit(cache=True, nogil=True)
-def _label(mask, depth, gap, first, last, slack):  # type: ignore[no-untyped-def]
-    height, width = mask.shape
-    labels = np.zeros((height, width), np.int32)
-    parent = np.zeros(height * width // 2 + 2, np.int32)
-    count = 0
-    for v in range(height):
-        for u in range(width):
-            if not mask[v, u]:
-                continue
-            own = 0
-            for k in range(4):  # left, and the three above
-                row, column = (v, u - 1) if k == 0 else (v - 1, u + k - 2)
-                if row < 0 or column < 0 or column >= width or not mask[row, column]:
-                    continue
-                if _belongs(depth, gap, first, last, slack, (v, u), (row, column)):
-                    other = _root(parent, labels[row, column])
-                    own = other if own == 0 else min(own, other)
-                    parent[max(own, other)] = own
-                    parent[_root(parent, labels[row, column])] = own
-                    if labels[v, u]:
-                        parent[_root(parent, labels[v, u])] = own
-                    labels[v, u] = own
-            if own == 0:
-                count += 1
-                parent[count] = count
-                labels[v, u] = count
-    return _numbered(labels, parent, count)
-
-
-@njit(cache=True, nogil=True)
-def _numbered(labels, parent, count):  # type: ignore[no-untyped-def]
-    """Number the roots from 1 on, and label every pixel with its root's number."""
-    number = np.zeros(count + 1, np.int32)
-    found = 0
-    for k in range(1, count + 1):
-        if _root(parent, k) == k:
-            found += 1
-            number[k] = found
-    for v in range(labels.shape[0]):
-        for u in range(labels.shape[1]):
-            if labels[v, u]:
-                labels[v, u] = number[_root(parent, labels[v, u])]
-    return labels, found
