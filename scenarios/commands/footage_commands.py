@@ -56,7 +56,7 @@ _TRACKERS = (
 )
 @options_of(
     "scenarios.footage.options:TrackOptions",
-    *("rate_hz", "tracker", "truth", "protocol", "boxes", "seed", "video", "overwrite"),
+    *("rate_hz", "timestamps", "tracker", "truth", "protocol", "boxes", "seed", "video", "overwrite"),
     tracker=f"Tracker to use: {_TRACKERS}.  [default: detection, or rgbd with --depth]",
 )
 @click.option("--detector", help=DETECTOR)

@@ -145,6 +145,13 @@ class TrackOptions:
             description="Frame rate.  [default: from the video or seqinfo.ini, otherwise 15]",
         ),
     ] = None
+    timestamps: Annotated[
+        Path | None,
+        Field(
+            description="Text file with the time of each image: a time, or a time and an image, per line."
+            "  [default: the times in the names of the images or in the video, else even ones]"
+        ),
+    ] = None
     tracker: Annotated[str, Field(description="Tracker.")] = DEFAULT_TRACKER
     truth: Annotated[
         Path | None,

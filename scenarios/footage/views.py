@@ -1,6 +1,6 @@
 """Read footage of any kind as frames: thermal with optional colour, or colour with depth."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -20,10 +20,11 @@ from peopleboy.scenarios.footage.options import (
 )
 from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
 from peopleboy.tracker.footage.grey import Radiometry, are_bytes_swapped, check_plausible, grey_maker
-from peopleboy.tracker.footage.image_sequences import PictureFolder, open_footage
-from peopleboy.tracker.footage.picture_names import pictures_in
+from peopleboy.tracker.footage.image_sequences import Footage, PictureFolder, folders_in, open_footage
+from peopleboy.tracker.footage.picture_names import offsets_of, pictures_in
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
 from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, rate_in
+from peopleboy.tracker.footage.time_stamps import read_time_stamps, time_stamps
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.tracker_names import split_name
 from peopleboy.tracker.trackers import BY_CONTRAST
@@ -48,16 +49,19 @@ class RgbdViews:
         _check_kind(options)
         self._options, self._rgbd = options, rgbd
         self._counts = DepthCounts(rgbd.depth, rgbd.m_per_count)
-        folders = [_folder(path, image) for path, image in _folders(options, rgbd)]
+        folders = [_folder(path, image, rgbd.depth) for path, image in _folders(options, rgbd)]
         all_notes = [*rgbd.camera.notes, *(note for folder in folders for note in folder.notes)]
         self.notes = list(dict.fromkeys(all_notes))
-        self._pairs = pair_up(*(folder.paths for folder in folders))
+        self._pairs = pair_up(folders[0].paths, folders[1].paths)
         self.notes += [self._pairs.note] if self._pairs.note else []
         self.expected = len(self._pairs.colour)
         self.numbers = folders[0].numbers if self.expected == len(folders[0].paths) else None
         if options.rate_hz is not None and self._pairs.time_s is not None:
             raise BadInput("--rate-hz: the images' file names contain their times; leave it out")
         self.rate_hz = options.rate_hz or self._pairs.rate_hz or DEFAULT_RATE_HZ
+        self._times_s = _given_times(options, [path.name for path in self._pairs.colour])
+        self.rate_hz = _rate_of(self._times_s) or self.rate_hz
+        self._offsets = offsets_of(self._pairs.colour)
         self._odometry: list[Odometry] | None = None
         if rgbd.odometry is not None:
             self._odometry = load_odometry(rgbd.odometry, self.expected)
@@ -90,8 +94,8 @@ class RgbdViews:
             )
 
     def _time_s(self, number: int) -> float:
-        times = self._pairs.time_s
-        return number / self.rate_hz if times is None else float(times[number])
+        times = self._times_s if self._pairs.time_s is None else self._pairs.time_s.tolist()
+        return _moment(self._options, self._times_s or times, self._offsets, number, self.rate_hz)
 
     def picture(self, frame: Frame) -> Picture:
         """Return the colour image of a frame."""
@@ -113,6 +117,44 @@ class RgbdViews:
         }
 
 
+def _given_times(options: TrackOptions, names: Sequence[str]) -> list[float] | None:
+    """Return the times of images in a file of time stamps, from 0; None without such a file."""
+    if options.timestamps is None:
+        return None
+    if options.rate_hz is not None:
+        raise BadInput("--rate-hz: --timestamps has the images' times; leave one of them out")
+    times = read_time_stamps(options.timestamps, names)
+    return [float(time) for time in times - times[0]] if len(times) else []
+
+
+def _rate_of(times_s: Sequence[float] | None) -> float | None:
+    """Return the images per second, from the median interval."""
+    return 1.0 / float(np.median(np.diff(times_s))) if times_s is not None and len(times_s) > 1 else None
+
+
+def _moment(
+    options: TrackOptions,
+    times_s: Sequence[float] | None,
+    offsets: Sequence[float] | None,
+    number: int,
+    rate_hz: float,
+) -> float:
+    """Return the time of an image: as given, or by the frame rate, with the gaps in its number."""
+    if times_s is None:
+        return (number if offsets is None else offsets[number]) / rate_hz
+    if number >= len(times_s):
+        raise BadInput(f"{options.timestamps}: has {len(times_s)} times, but there are more images")
+    return times_s[number]
+
+
+def _paths_of(footage: Footage) -> list[Path]:
+    return footage.paths if isinstance(footage, PictureFolder) else []
+
+
+def _numbers(count: int) -> list[str]:
+    return [str(number) for number in range(1, count + 1)]
+
+
 def _check_kind(options: TrackOptions) -> None:
     if options.colour is not None or options.radiometry != Radiometry():
         raise BadInput(
@@ -126,13 +168,20 @@ def _folders(options: TrackOptions, rgbd: RgbdOptions) -> tuple[tuple[Path, str]
     return (options.footage, DEPTH_COLOUR), (rgbd.depth, DEPTH)
 
 
-def _folder(path: Path, image: str) -> PictureFolder:
+def _folder(path: Path, image: str, depth: Path) -> PictureFolder:
     if not path.is_dir():
         raise BadInput(f"{path}: folder not found; colour images and their depth need one folder each")
     if (path / "run.json").is_file():
         raise BadInput(f"{path}: is a run; give {path / image}")
-    inner = [path / name for name in _COLOUR_FOLDERS if image == DEPTH_COLOUR and (path / name).is_dir()]
-    return PictureFolder(inner[0] if inner and not pictures_in(path) else path, path.name)
+    if image != DEPTH_COLOUR or pictures_in(path):
+        return PictureFolder(path, path.name)
+    inner = [each for each in folders_in(path) if each.resolve() != depth.resolve()]
+    named = [each for each in inner if each.name in _COLOUR_FOLDERS] or inner
+    if len(named) == 1:
+        return PictureFolder(named[0], path.name)
+    if not inner:
+        raise BadInput(f"{path}: contains no colour images; give the folder that has them")
+    raise BadInput(f"{path}: has images in {', '.join(f'{each.name}/' for each in inner)}; give one of them")
 
 
 COLOUR_TRACKER: Final = "colour"
@@ -155,9 +204,37 @@ class ThermalViews:
         self._options = options
         self._footage = open_footage(options.footage)
         self._colour = None if options.colour is None else open_footage(options.colour)
+        self._pair_up()
+        names = [path.name for path in paths] if (paths := _paths_of(self._footage)) else None
+        self._times_s = _given_times(options, names or _numbers(self._footage.expected))
+        self._offsets = offsets_of(paths)
+        if time_stamps(paths) is not None and self._times_s is None:
+            use = "used" if options.rate_hz is None else "not used, as --rate-hz says otherwise"
+            self._footage.notes.append(f"names of images contain their times, which are {use}")
         self.expected, self.is_exact = self._footage.expected, self._footage.is_exact
         self.numbers = self._footage.numbers
-        self.rate_hz = options.rate_hz or self._footage.rate_hz or self._given_rate() or DEFAULT_RATE_HZ
+        self.rate_hz = (
+            options.rate_hz
+            or _rate_of(self._times_s)
+            or self._footage.rate_hz
+            or self._given_rate()
+            or DEFAULT_RATE_HZ
+        )
+
+    def _pair_up(self) -> None:
+        """Leave out the images of two folders that have no counterpart."""
+        if not isinstance(self._footage, PictureFolder) or not isinstance(self._colour, PictureFolder):
+            return
+        pairs = pair_up(self._footage.paths, self._colour.paths, "colour")
+        self._footage.take(pairs.colour)
+        self._colour.paths = list(pairs.depth)
+        if pairs.note:
+            self._footage.notes.append(pairs.note)
+
+    def _time_s(self, number: int) -> float:
+        """Return the time of an image, from 0: that of its time stamp, or an even one, with gaps."""
+        own = self._footage.times_s if self._options.rate_hz is None else None
+        return _moment(self._options, self._times_s or own, self._offsets, number, self.rate_hz)
 
     def _given_rate(self) -> float | None:
         """Read the frame rate from a file beside the images."""
@@ -198,7 +275,7 @@ class ThermalViews:
             images: dict[str, NDArray[np.uint8]] = {THERMAL: to_grey(values)}
             if picture is not None:
                 images[COLOUR] = colour_picture(picture, "--colour")
-            yield Frame(images=images, time_s=number / self.rate_hz)
+            yield Frame(images=images, time_s=self._time_s(number))
 
     def _pictures(self) -> Iterator[tuple[NDArray[Any], NDArray[Any] | None]]:
         here, there = self._options.footage, self._options.colour

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.settings import Metavar
-from peopleboy.tracker.footage.read_picture import Raw
+from peopleboy.tracker.footage.read_tiff import Raw
 
 # For trackers that use contrast alone, each pixel is expressed in standard deviations of its neighbourhood.
 

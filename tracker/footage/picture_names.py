@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Final
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.time_stamps import time_stamps
 
-_TIME: Final = re.compile(r"\d+\.\d+")  # seconds
 SUFFIXES: Final = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp")
 
 
@@ -50,14 +50,28 @@ def jumps(paths: Sequence[Path]) -> list[tuple[int, int]]:
     Names must differ in one number alone, which mostly grows by the same step; others, such as times, have no
     gaps.
     """
-    numbers = numbers_of(paths)
-    if numbers is None or all(_TIME.fullmatch(path.stem) for path in paths):
+    numbers, step = numbers_of(paths), step_of(paths)
+    if numbers is None or step is None:
         return []
+    return [(before, after) for before, after in pairwise(numbers) if after - before > step]
+
+
+def step_of(paths: Sequence[Path]) -> int | None:
+    """Return by how much the numbers in names mostly grow; None if there are none, or no usual step."""
+    numbers = numbers_of(paths)
+    if numbers is None or len(numbers) < 2 or time_stamps(paths) is not None:
+        return None
     neighbours = list(pairwise(numbers))
     step, count = Counter(after - before for before, after in neighbours).most_common(1)[0]
-    if 2 * count <= len(neighbours):
-        return []
-    return [(before, after) for before, after in neighbours if after - before > step]
+    return step if step > 0 and 2 * count > len(neighbours) else None
+
+
+def offsets_of(paths: Sequence[Path]) -> list[float] | None:
+    """Return when pictures were taken by their numbers, in usual steps since the first; None without gaps."""
+    numbers, step = numbers_of(paths), step_of(paths)
+    if numbers is None or step is None or not jumps(paths):
+        return None
+    return [(number - numbers[0]) / step for number in numbers]
 
 
 def numbers_of(paths: Sequence[Path]) -> list[int] | None:

@@ -1,21 +1,21 @@
 """Reading pictures from files, one by one."""
 
+import io
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.read_tiff import Raw, other_tiff, without_orientation
 from peopleboy.user_files import check_plain
 from peopleboy.wording import counted
-
-Raw = NDArray[Any]  # (H, W) uint8, uint16 or float32, or (H, W, 3) uint8 RGB
 
 _SIXTEEN_BIT: Final = ("I;16", "I;16B", "I;16L", "I")
 _TIFF_STARTS: Final = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
@@ -39,12 +39,19 @@ def read_picture(path: Path, notes: list[str]) -> Raw:
         BadInput: it is damaged, of an unsupported kind, one of several in its file, or has pixels that are
             not finite.
     """
+    if (others := other_tiff(path, notes)) is not None:
+        _check_single(path, len(others))
+        return _finite(others[0], str(path))
     with _opened(path) as image:
-        if (pages := len(_pages_in(image))) > 1:
-            raise BadInput(
-                f"{path}: has {pages} pages, and in a folder each picture is a file; give {path} alone"
-            )
+        _check_single(path, len(_pages_in(image)))
         return _finite(_as_array(image, path, notes), str(path))
+
+
+def _check_single(path: Path, pages: int) -> None:
+    if pages > 1:
+        raise BadInput(
+            f"{path}: has {pages} pages, and in a folder each picture is a file; give {path} alone"
+        )
 
 
 def count_pages(path: Path) -> int:
@@ -53,6 +60,8 @@ def count_pages(path: Path) -> int:
     Raises:
         BadInput: it cannot be read.
     """
+    if (others := other_tiff(path, [])) is not None:
+        return len(others)
     with _opened(path) as image:
         return len(_pages_in(image))
 
@@ -67,6 +76,11 @@ def read_pages(path: Path, notes: list[str]) -> Iterator[Raw]:
 
 
 def _each_page(path: Path, notes: list[str]) -> Iterator[tuple[str, Raw]]:
+    if (others := other_tiff(path, notes)) is not None:
+        for number, picture in enumerate(others, start=1):
+            where = f"{path}: page {number}"
+            yield where, _finite(picture, where)
+        return
     with _opened(path) as image:
         for number, page in enumerate(_pages_in(image), start=1):
             image.seek(page)
@@ -93,7 +107,10 @@ def _opened(path: Path) -> Iterator[Image.Image]:
     """Open a picture; errors describe the problem in one line."""
     check_plain(path)
     try:
-        with Image.open(path) as image:
+        turned = without_orientation(path) if path.is_file() else None
+        with Image.open(path if turned is None else io.BytesIO(turned[0])) as image:
+            if turned is not None:
+                image.info[_TURNED_BY] = turned[1]
             yield image
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
         if isinstance(error, BadInput):
@@ -137,7 +154,31 @@ def _is_tiff(path: Path) -> bool:
         return file.read(4) in _TIFF_STARTS
 
 
+_ORIENTATION: Final = 0x0112  # tag of EXIF
+_TURNED_BY: Final = "peopleboy.orientation"
+_TURNS: Final[Mapping[int, Callable[[Raw], Raw]]] = {
+    2: np.fliplr,
+    3: partial(np.rot90, k=2),
+    4: np.flipud,
+    5: lambda picture: np.swapaxes(picture, 0, 1),
+    6: partial(np.rot90, k=-1),
+    7: lambda picture: np.rot90(np.swapaxes(picture, 0, 1), k=2),
+    8: partial(np.rot90, k=1),
+}
+
+
 def _as_array(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
+    """Return the pixels of a picture, the right way up."""
+    array = _pixels_of(opened, path, notes)
+    orientation = opened.info.get(_TURNED_BY) or opened.getexif().get(_ORIENTATION, 1)
+    turn = _TURNS.get(int(orientation))  # Pillow has turned other TIFFs by now
+    if turn is None:
+        return array
+    _note(notes, "pictures are turned as their EXIF orientation says")
+    return np.ascontiguousarray(turn(array))
+
+
+def _pixels_of(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
     mode = opened.mode
     if mode == "RGB" and _has_deep_colours(opened):
         return _deep_grey(opened, path, notes)
@@ -162,7 +203,7 @@ def _has_deep_colours(opened: Image.Image) -> bool:
 
 def _deep_grey(opened: Image.Image, path: Path, notes: list[str]) -> Raw:
     """Return the counts of three equal channels of 16 bits; otherwise 8 bits of each."""
-    deep = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    deep = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)  # which does not turn it
     if deep is not None and deep.dtype == np.uint16 and (deep == deep[..., :1]).all():
         return np.ascontiguousarray(deep[..., 0])
     _note(notes, "pictures have 16 bits a channel, of which 8 are read")

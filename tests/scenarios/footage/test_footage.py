@@ -159,12 +159,45 @@ def test_four_channels_lose_the_fourth_and_say_so(tmp_path):
     assert "opacity" in result.stderr
 
 
-def test_colour_goes_along_and_must_be_as_long(tmp_path):
-    clip, colour = write_folder(tmp_path / "clip"), write_folder(tmp_path / "colour", 11, "jpg")
-    assert_names(refusal(clip, "--out", tmp_path / "out", "--colour", colour), colour, "11")
-    assert not (tmp_path / "out").exists()
-    cv2.imwrite(str(colour / "frame12.jpg"), walker(11))
+def test_colour_goes_along_and_what_has_none_is_left_out(tmp_path):
+    clip, colour = write_folder(tmp_path / "clip"), write_folder(tmp_path / "colour", 12, "jpg")
     assert call(clip, "--out", tmp_path / "out", "--colour", colour).exit_code == 0
+    (colour / "frame7.jpg").unlink()
+    (clip / "frame3.png").unlink()
+    result = call(clip, "--out", tmp_path / "some", "--colour", colour)
+    assert "10 frames" in result.stdout
+    assert_names(result.stderr.replace("\n", " "), "frame7.png: has no colour picture")
+    for number in range(1, 13):
+        (colour / f"frame{number}.jpg").unlink(missing_ok=True)
+        cv2.imwrite(str(colour / f"{5 * number * number}.jpg"), walker(number))
+    (colour / "5.jpg").unlink()
+    assert_names(refusal(clip, "--out", tmp_path / "none", "--colour", colour), colour, "same numbers")
+
+
+def times_of(folder):
+    table = pq.read_table(folder / "tracks.parquet")
+    return dict(zip(table["frame"].to_pylist(), table["time_s"].to_pylist(), strict=True))
+
+
+def test_times_come_from_a_file_or_from_gaps_in_the_numbers(tmp_path):
+    clip = write_folder(tmp_path / "clip")
+    stamps = tmp_path / "times.txt"
+    stamps.write_text(
+        "# time name\n" + "".join(f"{10 + 0.1 * k**1.1:.4f} frame{k}.png\n" for k in range(1, 13))
+    )
+    result = call(clip, "--out", tmp_path / "out", "--timestamps", stamps, "--start", "30,30,20,60")
+    assert result.exit_code == 0, result.stderr
+    assert times_of(tmp_path / "out")[12] == pytest.approx(0.1 * (12**1.1 - 1), abs=1e-3)
+    assert_names(
+        refusal(clip, "--out", tmp_path / "no", "--timestamps", stamps, "--rate-hz", 5), "--timestamps"
+    )
+    stamps.write_text("1\n2\n3\n")
+    assert_names(refusal(clip, "--out", tmp_path / "no", "--timestamps", stamps), stamps, "12", "got 3")
+    for number in (5, 6, 7):
+        (clip / f"frame{number}.png").unlink()
+    result = call(clip, "--out", tmp_path / "gaps", "--rate-hz", 10, "--start", "30,30,20,60")
+    assert_names(result.stderr.replace("\n", " "), "jump from 4 to 8", "their times have them")
+    assert times_of(tmp_path / "gaps")[5] == pytest.approx(0.7)
 
 
 def test_pictures_of_mixed_sizes_are_refused_by_name(tmp_path):

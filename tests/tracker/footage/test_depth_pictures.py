@@ -16,10 +16,48 @@ def stems(found: list[Path]) -> list[str]:
 
 
 def test_names_that_are_no_times_go_together_by_their_order() -> None:
-    pairs = pair_up(paths("rgb", "a1", "a2"), paths("depth", "d7", "d9"))
-    assert (stems(pairs.colour), stems(pairs.depth)) == (["a1", "a2"], ["d7", "d9"])
+    pairs = pair_up(paths("rgb", "a1", "a2"), paths("depth", "d7", "d8"))
+    assert (stems(pairs.colour), stems(pairs.depth)) == (["a1", "a2"], ["d7", "d8"])
     assert pairs.time_s is None
     assert pairs.rate_hz is None
+
+
+@pytest.mark.parametrize(
+    ("colour", "depth"),
+    [
+        (["a1", "a2", "a4"], ["d7", "d8", "d9"]),  # one is missing in one folder alone
+        (["a1", "a3", "a4", "a6"], ["d11", "d12", "d14", "d15"]),
+        (["anna", "ben"], ["c1", "c2"]),
+        (["1.5", "1.62", "1.7"], ["1", "2", "3"]),
+    ],
+)
+def test_names_that_do_not_say_what_belongs_together_are_refused(colour: list[str], depth: list[str]) -> None:
+    with refused("depth", "rgb", "same numbers"):
+        pair_up(paths("rgb", *colour), paths("depth", *depth))
+
+
+@pytest.mark.parametrize(("digits", "unit_s"), [(13, 1e-3), (16, 1e-6), (19, 1e-9)])
+def test_whole_numbers_since_1970_are_times(digits: int, unit_s: float) -> None:
+    rng = np.random.default_rng(1)
+    colour = 1700000000.0 + np.arange(44) / 15
+    kept = np.sort(rng.choice(44, 40, replace=False))
+    count = [f"cam_{round(time / unit_s):0{digits}d}" for time in colour]
+    later = [f"{round((time + 0.009) / unit_s):0{digits}d}" for time in colour[kept]]
+    pairs = pair_up(paths("rgb", *count), paths("depth", *later))
+    assert stems(pairs.colour) == [count[k] for k in kept]
+    assert stems(pairs.depth) == later
+    assert pairs.rate_hz == pytest.approx(15, abs=0.3)
+
+
+def test_a_list_of_pairs_beside_the_folders_decides(tmp_path: Path) -> None:
+    colour = [tmp_path / "rgb" / f"{k}.png" for k in (1, 2, 3)]
+    depth = [tmp_path / "depth" / f"{k}.png" for k in (1, 2, 3)]
+    (tmp_path / "associations.txt").write_text(
+        "0.1 rgb/1.png 0.2 depth/2.png\n0.3 depth/3.png 0.3 rgb/3.png\n"
+    )
+    pairs = pair_up(colour, depth)
+    assert (stems(pairs.colour), stems(pairs.depth)) == (["1", "3"], ["2", "3"])
+    assert "1 of 3" in pairs.note
 
 
 def test_if_one_folder_alone_has_times_order_decides() -> None:

@@ -1,3 +1,4 @@
+import zlib
 from pathlib import Path
 
 import cv2
@@ -5,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from PIL import Image
+from PIL import Image, TiffImagePlugin
 
 from peopleboy.tracker.footage.grey import are_bytes_swapped
 from peopleboy.tracker.footage.image_sequences import open_footage
@@ -130,10 +131,86 @@ def test_counts_with_exchanged_bytes_are_noticed():
         assert not are_bytes_swapped(sound)
 
 
-def test_a_tiff_of_64_bits_is_refused_with_advice(tmp_path):
-    cv2.imwrite(str(tmp_path / "a.tif"), np.full((60, 80), 20.5))
-    with refused("a.tif", "64-bit floats", "32-bit"):
-        read_picture(tmp_path / "a.tif", [])
+def test_tiffs_of_floats_of_64_bits_and_of_signed_counts_are_read(tmp_path):
+    picture = np.linspace(-20.5, 40.25, 60 * 80).reshape(60, 80)
+    cv2.imwrite(str(tmp_path / "a.tif"), picture)
+    found = read_picture(tmp_path / "a.tif", [])
+    assert found.dtype == np.float32
+    assert found == pytest.approx(picture.astype(np.float32))
+    for low, dtype in ((0, np.uint16), (-500, np.float32)):
+        counts = np.arange(low, low + 4800, dtype=np.int16).reshape(60, 80)
+        cv2.imwrite(str(tmp_path / "b.tif"), counts)
+        found = read_picture(tmp_path / "b.tif", [])
+        assert (found.dtype, found.tolist()) == (dtype, counts.tolist())
+    cv2.imwritemulti(str(tmp_path / "c.tif"), [picture, picture + 1.0])
+    assert [page[0, 0] for page in open_footage(tmp_path / "c.tif")] == [-20.5, -19.5]
+
+
+@pytest.mark.parametrize("packing", [1, 8])
+def test_a_tiff_of_floats_of_16_bits_is_read(tmp_path, packing):
+    picture = np.linspace(10.0, 40.0, 6 * 8).reshape(6, 8).astype("<f2")
+    data = zlib.compress(picture.tobytes()) if packing == 8 else picture.tobytes()
+    tags = TiffImagePlugin.ImageFileDirectory_v2()
+    for tag, value in {256: 8, 257: 6, 258: 16, 259: packing, 262: 1, 277: 1, 278: 6, 339: 3}.items():
+        tags[tag] = value
+    tags[279] = len(data)
+    tags[273] = 0  # from the end of the tags, where the library moves it
+    header = b"II*\0\x08\0\0\0" + tags.tobytes(8)
+    (tmp_path / "half.tif").write_bytes(header + data)
+    found = read_picture(tmp_path / "half.tif", [])
+    assert found.dtype == np.float32
+    assert found == pytest.approx(picture.astype(np.float32))
+
+
+@pytest.mark.parametrize("suffix", ["png", "tif"])
+def test_three_equal_channels_of_16_bits_are_counts_and_others_lose_bits_with_a_note(tmp_path, suffix):
+    counts = np.arange(29000, 29000 + 48, dtype=np.uint16).reshape(6, 8)
+    path = tmp_path / f"deep.{suffix}"
+    cv2.imwrite(str(path), np.dstack([counts] * 3))
+    notes: list[str] = []
+    assert read_picture(path, notes).tolist() == counts.tolist()
+    assert not notes
+    cv2.imwrite(str(path), np.dstack([counts, counts, counts + 9]))
+    assert read_picture(path, notes).dtype == np.uint8
+    assert_names(notes[0], "16 bits", "8 are read")
+
+
+@pytest.mark.parametrize("suffix", ["jpg", "png", "tif"])
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_pictures_are_turned_as_their_exif_orientation_says(tmp_path, suffix, orientation):
+    upright = np.zeros((40, 64), np.uint8)
+    upright[:8, :24] = 250  # the upper left corner
+    stored = {
+        1: upright,
+        2: upright[:, ::-1],
+        3: upright[::-1, ::-1],
+        4: upright[::-1],
+        5: upright.T,
+        6: np.rot90(upright, 1),
+        7: np.rot90(upright, 2).T,
+        8: np.rot90(upright, -1),
+    }[orientation]
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    path = tmp_path / f"turned.{suffix}"
+    Image.fromarray(np.ascontiguousarray(stored)).save(path, exif=exif)
+    found = read_picture(path, [])
+    assert found.shape == upright.shape
+    assert np.abs(found.astype(int) - upright).mean() < 3.0
+
+
+def test_the_times_in_names_are_those_of_the_pictures(tmp_path):
+    for time in (1700000000.0, 1700000000.066667, 1700000000.4, 1700000000.466667):
+        cv2.imwrite(str(tmp_path / f"{time:.6f}.png"), np.zeros((6, 8), np.uint8))
+    footage = open_footage(tmp_path)
+    assert footage.times_s == pytest.approx([0.0, 0.066667, 0.4, 0.466667], abs=1e-6)
+    assert footage.rate_hz == pytest.approx(15.0, abs=0.01)
+
+
+def test_names_that_count_by_twos_are_noted(tmp_path):
+    for number in (2, 4, 6, 8):
+        cv2.imwrite(str(tmp_path / f"{number:04}.png"), np.zeros((6, 8), np.uint8))
+    assert_names(open_footage(tmp_path).notes[0], "count by 2")
 
 
 def test_a_folder_with_colour_and_infrared_pictures_is_refused_with_both(tmp_path):
@@ -156,6 +233,7 @@ def test_a_video_with_uneven_times_is_not_taken_for_a_damaged_one(tmp_path):
     footage = open_footage(tmp_path / "uneven.mkv")
     assert len(list(footage)) == 7
     assert_names(footage.notes[-1], "7 pictures at uneven times", "--rate-hz 9")
+    assert footage.times_s == pytest.approx(np.array([0, 2, 4, 5, 17, 19, 20]) / 30, abs=1e-3)
 
 
 def test_a_folder_that_vanishes_is_refused(tmp_path):
