@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.random_streams import stream
-from peopleboy.sim.cameras.camera_config import CameraConfig, calibrations_of
+from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig, calibrations_of
 from peopleboy.sim.cameras.imaging.camera_view import CameraView, make_material_table
 from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
@@ -299,6 +299,7 @@ class SimulatedWorld:
             [paintings.get(key.name) for key in keys],
         )
         self._truth_maker = TruthMaker(keys, self.crowd, part_materials, config.place.movers)
+        self.is_clear = np.array([material.is_clear for material in part_materials], np.bool_)
         self._is_shiny = self.materials.shine > 0.0
         stands_out = abs(self.materials.thermal[:, 0] - config.place.surroundings_c) > _STANDS_OUT_K
         is_person, glows = self._truth_maker.person_of_part != NOBODY, self.materials.colour[:, 6] > 0.0
@@ -316,7 +317,7 @@ class SimulatedWorld:
         if self.config.renderer == BLIND:
             return
         self._scene_now: Scene | None = None
-        self._seen: dict[tuple[Renderer, CameraGeometry], RenderPass] = {}
+        self._seen: dict[tuple[Renderer, CameraGeometry, bool], RenderPass] = {}
         self.rig.forget()
 
     @property
@@ -349,11 +350,34 @@ class SimulatedWorld:
             BadInput: the world has no images.
         """
         self._check_sight()
+        return self._look(config, sees_through=not kind_of(config).senses_heat and bool(self.is_clear.any()))
+
+    def _look(self, config: CameraConfig, *, sees_through: bool) -> RenderPass:
+        """Render a camera's view, with or without the surfaces through which light passes."""
         renderer, camera = kind_of(config).renderer, config.camera
-        if (renderer, camera) not in self._seen:
+        key = renderer, camera, sees_through
+        if key not in self._seen:
             pose = self.robot.world_from_robot() @ camera.robot_from_camera
-            self._seen[renderer, camera] = look(renderer, self._scene, camera, pose)
-        return self._seen[renderer, camera]
+            scene = self._scene.without(self.is_clear) if sees_through else self._scene
+            self._seen[key] = look(renderer, scene, camera, pose)
+        return self._seen[key]
+
+    def _glass_cosine(self, config: CameraConfig) -> Matrix | None:
+        """Return the cosine of the angle at which a depth camera looks through glass, (H, W), or NaN."""
+        if not isinstance(config, DepthConfig) or not self.is_clear.any():
+            return None
+        solid, camera = self._look(config, sees_through=False), config.camera
+        assert isinstance(camera, Pinhole)
+        v, u = np.mgrid[0 : camera.height, 0 : camera.width]
+        across, down = (
+            (u - camera.centre_px[0]) / camera.focal_px,
+            (v - camera.centre_px[1]) / camera.focal_px,
+        )
+        rays = np.stack([across, down, np.ones_like(across)], axis=-1)
+        rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+        normals = solid.view.normal @ solid.world_from_camera[:3, :3]
+        is_pane = (solid.view.part >= 0) & self.is_clear[solid.view.part]
+        return np.where(is_pane, np.abs((rays * normals).sum(axis=-1)), np.nan)
 
     def _camera_view(self, config: CameraConfig) -> CameraView:
         """Return a sensor's view with everything that image formation needs."""
@@ -369,6 +393,7 @@ class SimulatedWorld:
             turn_rad_s=self.robot.velocity()[1],
             time_s=self.time_s,
             full_detail=self._full_detail(seen),
+            glass_cosine=self._glass_cosine(config),
         )
 
     def _full_detail(self, seen: RenderPass) -> FullDetail | None:

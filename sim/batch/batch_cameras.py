@@ -15,7 +15,7 @@ from peopleboy.sim.batch.drive import JoinedWorlds
 from peopleboy.sim.batch.image_kernels import Array, Poses, join_scenes
 from peopleboy.sim.batch.render_stages import Images, has_stage, make_stage
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.kinds import image_names, name_images
+from peopleboy.sim.cameras.kinds import image_names, kind_of, name_images
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.observation import OnDemand
 from peopleboy.sim.physics.kinematic import turn_wheels
@@ -206,6 +206,7 @@ class BatchCameras:
         self._images = {name: image_names(name, config) for name, config in self._cameras.items()}
         first_body = np.repeat(joined.first_body[:-1], np.diff(joined.first_part))
         self._body_of_part = joined.bodies.of_part + first_body
+        self._is_clear = np.concatenate([world.is_clear for world in worlds])
         self._shots = Exposures.none()
 
     def look(self, active: Numbers, robots: Array, turn_rad_s: Array) -> Exposures:
@@ -229,7 +230,7 @@ class BatchCameras:
                 assert isinstance(config.camera, Pinhole)
                 poses = Poses(
                     part=part,
-                    hidden=hidden,
+                    hidden=hidden if kind_of(config).senses_heat else hidden | self._is_clear,
                     camera=robots[rows] @ config.camera.robot_from_camera,
                     turned=turn_rad_s[rows] * config.exposure_s,
                 )

@@ -172,6 +172,7 @@ class CameraKind:
         channels: channels of the first image: 1 for (H, W), 3 for (H, W, 3) RGB.
         dtype, unit: type and unit of the first image.
         has_boxes: whether bounding boxes of people make sense in it.
+        senses_heat: whether it senses heat, which glass blocks; light passes through glass.
     """
 
     config: type[CameraConfig]
@@ -187,6 +188,7 @@ class CameraKind:
     dtype: type[np.unsignedinteger[Any]] = np.uint8
     unit: str = "grey"
     has_boxes: bool = True
+    senses_heat: bool = False
 
 
 KINDS: Final[dict[str, CameraKind]] = {
@@ -200,6 +202,7 @@ KINDS: Final[dict[str, CameraKind]] = {
         layers=(),
         more_layers=_thermal_images,
         shown=SCENE,
+        senses_heat=True,
     ),
     "colour": CameraKind(
         config=ColourConfig,

@@ -1,7 +1,7 @@
 """Sensors: from a camera's view at an instant to its images, including noise."""
 
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -129,6 +129,9 @@ class PanoramaSensor:
         skip_gaussian((*size, 3), self._noise)
 
 
+_LEAST_GLASS_COSINE: Final = 0.5  # more obliquely, glass reflects a fifth of the sensor's light and more
+
+
 class DepthSensor:
     """Depth camera: depth in millimetres, optionally 8-bit sRGB and amplitude of the same pixels."""
 
@@ -143,6 +146,8 @@ class DepthSensor:
         """Take the images of an instant: (H, W) uint16, (H, W, 3) uint8 and (H, W) uint16."""
         config = self._config
         depth, amplitude = self._measure(seen)
+        if seen.glass_cosine is not None and config.scale > 0.0:
+            depth = np.where(seen.glass_cosine < _LEAST_GLASS_COSINE, 0, depth).astype(np.uint16)
         return (
             depth if self._offsets is None else add_offsets(depth, self._offsets),
             *((expose(colour_image(seen, config), config, self._colour_noise),) if config.colour else ()),

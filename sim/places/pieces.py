@@ -38,6 +38,7 @@ class Piece:
     covering: Covering = Covering.BARE
     gradient_k_per_m: float = 0.0
     uneven_k: float = 0.0
+    is_clear: bool = False
 
 
 Builder = Callable[[Vector, float, Rgb], tuple[Piece, ...]]

@@ -93,7 +93,9 @@ def render(scene: "Scene", camera: Pinhole, world_from_camera: Matrix) -> View:
     if scene.renderer == "bullet":
         if not isinstance(scene.physics, Rasteriser):
             raise BadInput("renderer 'bullet' needs physics bullet; choose raycast")
-        return rasterise(scene.physics, camera, world_from_camera, np.where(hidden, NOBODY, persons))
+        people = np.where(hidden, NOBODY, persons)
+        removed = hidden & ~scene.physics.hidden_parts()  # the physics world knows all others
+        return rasterise(scene.physics, camera, world_from_camera, people, removed)
     raise BadInput(f"unknown renderer {scene.renderer!r}; choose raycast or bullet")
 
 
@@ -119,15 +121,20 @@ def cast(
 
 
 def rasterise(
-    physics: Rasteriser, camera: Pinhole, world_from_camera: Matrix, person_of_part: NDArray[np.int64]
+    physics: Rasteriser,
+    camera: Pinhole,
+    world_from_camera: Matrix,
+    person_of_part: NDArray[np.int64],
+    removed: NDArray[np.bool_],
 ) -> View:
     """Render with TinyRenderer: the whole scene, then each person separately for the cover.
 
     Normals are computed from depths, and are inaccurate on small parts.
     """
-    part, depth = physics.camera_image(camera, world_from_camera)
-    cover = np.zeros(part.shape, np.uint64)
     names = np.array([key.name for key in physics.parts()])
+    rest = set(names[~removed].tolist()) if removed.any() else None
+    part, depth = physics.camera_image(camera, world_from_camera, only=rest)
+    cover = np.zeros(part.shape, np.uint64)
     for person in np.unique(person_of_part[person_of_part != NOBODY]):
         alone = set(names[person_of_part == person].tolist())
         silhouette, _ = physics.camera_image(camera, world_from_camera, only=alone)
@@ -230,6 +237,10 @@ class Scene:
     world_from_part: Matrix
     person_of_part: NDArray[np.int64]
     hidden: Mask
+
+    def without(self, parts: Mask) -> "Scene":
+        """Return the scene without some parts (P,), such as those through which light passes."""
+        return replace(self, hidden=self.hidden | parts)
 
     def only(self, parts: Mask) -> "Scene":
         """Return the scene with only some parts (P,), such as those of one person."""

@@ -105,6 +105,7 @@ class Material:
         covering: texture with `detail: full`.
         gradient_k_per_m: [K/m] vertical temperature gradient, positive if warmer above, with `detail: full`.
         uneven_k: [K] standard deviation of the temperature over all scales, with `detail: full`.
+        is_clear: whether light passes through, as through glass; only thermal cameras see the surface then.
     """
 
     temperature_c: float
@@ -122,6 +123,7 @@ class Material:
     covering: Covering = Covering.BARE
     gradient_k_per_m: float = 0.0
     uneven_k: float = 0.0
+    is_clear: bool = False
 
 
 # Fine differences of temperature and brightness in addition to a material, on a grid.

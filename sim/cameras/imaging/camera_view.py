@@ -128,6 +128,8 @@ class CameraView:
         turn_rad_s: [rad/s] turn rate of the robot about the vertical axis.
         time_s: [s] time since the start.
         full_detail: extras for full detail; None in plain detail.
+        glass_cosine: (H, W) cosine of the angle between each pixel's ray and the normal of the glass that it
+            passes, NaN without glass; for depth cameras in places with glass, otherwise None.
     """
 
     view: View
@@ -140,3 +142,4 @@ class CameraView:
     turn_rad_s: float
     time_s: float
     full_detail: FullDetail | None = None
+    glass_cosine: NDArray[np.float64] | None = None

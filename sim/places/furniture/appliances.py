@@ -232,7 +232,7 @@ def machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("glass_wall", size_m=(0.08, 2.4, 2.4), temperature_c=19.5, rgb=(0.45, 0.55, 0.55))
 def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """Build a full-height pane in a frame of posts, which reflects people who walk past."""
+    """Build a full-height pane in a frame of posts, which reflects the heat of people and lets light pass."""
     depth, width, height = size
     pane = standing_box(0.4 * depth, width - 0.02, 0.02, height - 0.02)
     count = max(round(width / 1.2), 1)
@@ -255,6 +255,7 @@ def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
             gradient_k_per_m=0.8,
             covering=Covering.GLASS,
             shine=1.0,
+            is_clear=True,
         ),
         Piece("frame", (*posts, *rails), temperature + 1.5, STEEL, emissivity=0.7),
     )

@@ -105,6 +105,7 @@ def _material(piece: Piece) -> Material:
         covering=piece.covering,
         gradient_k_per_m=piece.gradient_k_per_m,
         uneven_k=piece.uneven_k,
+        is_clear=piece.is_clear,
     )
 
 
