@@ -14,11 +14,12 @@ from benchmarks.compare import timed_ms
 from benchmarks.peers.contestants import JOINT, PEERS, RATE_HZ, make_contestant
 from peopleboy import tracker
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.run_folder.run_files import occluded_shares
 from peopleboy.scenarios.running.engine.task import ReportProgress
 from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, write_tracks
-from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
+from peopleboy.tracker.evaluation.occlusion_scores import OccludedShares, Occlusion, score_occlusions
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 
@@ -84,11 +85,7 @@ def compete(name: str, scenario: str, seed: int, folder: Path) -> Result:
 
 def occlusions_of(shot: Film, truth: TrueBoxes, tracks: TrackBoxes) -> list[Occlusion]:
     """Score the identities at the total occlusions of a sequence."""
-    people = shot.people().select(["frame", "id", "occluded_fraction"])
-    columns = (people[name].to_pylist() for name in people.column_names)
-    hidden = {(frame, person): share for frame, person, share in zip(*columns, strict=True)}
-    of_rows = np.array([hidden[key] for key in zip(truth.frame.tolist(), truth.id.tolist(), strict=True)])
-    return score_occlusions(truth, tracks, of_rows, np.ones(len(truth), dtype=np.bool_), RATE_HZ)
+    return score_occlusions(truth, tracks, OccludedShares(occluded_shares(shot.people(), truth), RATE_HZ))
 
 
 def _run(name: str, shot: Film, said: Path) -> None:

@@ -12,7 +12,7 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_run, r
 from peopleboy.scenarios.scores.by_tracker import check_same_scenes
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 from peopleboy.tracker.evaluation.evaluate import Scores
-from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
+from peopleboy.tracker.evaluation.occlusion_scores import OccludedShares, Occlusion, score_occlusions
 from peopleboy.wording import counted
 
 MOST_BESIDE = 4  # columns that fit on paper
@@ -140,9 +140,7 @@ def _occlusions(found: RunFindings) -> tuple[Occlusion, ...]:
     occluded = {person.id: person.occluded for person in found.people}
     rows = zip(truth.id.tolist(), truth.frame.tolist(), strict=True)
     hidden = np.array([occluded[person][frame - 1] for person, frame in rows], np.float64)
-    return tuple(
-        score_occlusions(truth, tracks, np.nan_to_num(hidden), np.isfinite(hidden), found.run.rate_hz)
-    )
+    return tuple(score_occlusions(truth, tracks, OccludedShares(hidden, found.run.rate_hz)))
 
 
 def _labels(groups: Sequence[Sequence[FinishedRun]], paths: Sequence[Path]) -> list[str]:

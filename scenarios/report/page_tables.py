@@ -21,7 +21,7 @@ from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.drive_record import Row
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
 from peopleboy.sim.truth.events import Move
-from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
+from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length, name_length
 from peopleboy.tracker.evaluation.table import FIGURES, IF_KNOWN, Figure
 
 LONGEST = 40  # most runs that are listed individually
@@ -118,9 +118,8 @@ def identities_kept(columns: Sequence[Column]) -> PageTable:
     rows = []
     for index, (low, high) in enumerate(pairwise(LENGTHS_S)):
         cells = [f"{t[index].kept} of {t[index].occlusions}" if t[index].occlusions else "-" for t in tables]
-        name = f"{low:g} to {high:g} s" if high < LENGTHS_S[-1] else f"over {low:g} s"
         if any(cell != "-" for cell in cells):
-            rows.append((name, *cells))
+            rows.append((name_length(low, high), *cells))
     return PageTable((Head("wholly hidden for", "row"), *_heads(columns)), rows)
 
 

@@ -217,6 +217,18 @@ def truth_files(folder: Path, camera: str) -> tuple[Path, Path]:
     return folder / "truth" / text, folder / truth_table(camera)
 
 
+OCCLUDED: Final = ("frame", "id", "occluded_fraction")
+"""Columns of the ground truth that state how much of a person is occluded."""
+
+
+def occluded_shares(people: pa.Table, truth: TrueBoxes) -> Floats:
+    """Return the occluded share of each row of a truth (N,) from a table of the same people; NaN for none."""
+    rows = zip(*(people[name].to_pylist() for name in OCCLUDED), strict=True)
+    share = {(frame, person): occluded for frame, person, occluded in rows}
+    keys = zip(truth.frame.tolist(), truth.id.tolist(), strict=True)
+    return np.array([share.get(key, np.nan) for key in keys], dtype=np.float64)
+
+
 def true_boxes(text: Path, table: Path, kind: BoxKind) -> TrueBoxes:
     """Read the ground truth: torso boxes are in the text file, whole-person boxes only in the table.
 

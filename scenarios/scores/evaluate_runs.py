@@ -29,12 +29,19 @@ from peopleboy.scenarios.run_folder.run_files import (
     truth_files,
 )
 from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRACKS, TRUTH
+from peopleboy.scenarios.scores.people_ranges import (
+    OcclusionRange,
+    PeopleRange,
+    ReadOccluded,
+    occluded_in,
+)
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.latency import read_latency
 from peopleboy.tracker.evaluation.mot_files import read_tracks
-from peopleboy.tracker.evaluation.protocols import RULES, Protocol, recount
+from peopleboy.tracker.evaluation.occlusion_scores import OccludedShares
+from peopleboy.tracker.evaluation.protocols import RULES, Protocol, Surroundings, recount
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind, width_per_height
 from peopleboy.tracker.footage.footage_truth import GivenTruth, find_truth, load_truth
@@ -216,6 +223,7 @@ class ScoreOptions:
             "that each run was scored against]"
         ),
     ] = None
+    people_range: PeopleRange | None = None
 
     def least_visible(self, protocol: Protocol) -> float | None:
         """Return the visible fraction up to which people are ignored; None if all are scored."""
@@ -251,11 +259,16 @@ def score_people(
     truth, tracks = held
     protocol = options.protocol or Protocol.PEOPLEBOY
     min_visible = options.least_visible(protocol)
+
+    def recounted(truth: TrueBoxes, every: int = 1) -> tuple[TrueBoxes, Surroundings]:
+        counted, around = recount(truth, protocol)
+        return _in_range(counted, options, lambda: occluded_in(folder, by.camera, truth, every)), around
+
     if by.camera != THERMAL:
         every = CONTROL_HZ // (cameras_of(folder)[by.camera].rate_hz or CONTROL_HZ)
         tracks = tracks.take((tracks.frame - 1) % every == 0)
-        truth, around = recount(truth, protocol)
-        scores = evaluate(truth, tracks, frames=frames, min_visible=min_visible, around=around)
+        counted, around = recounted(truth, every)
+        scores = evaluate(counted, tracks, frames=frames, min_visible=min_visible, around=around)
         images = replace(scores.counts, frames=len(range(0, frames, every)))
         return ScoredPeople(replace(scores, counts=images), by, notes_on(folder, by, truth, tracks))
     robot = read_table(folder / "robot.parquet", ROBOT, POSE)
@@ -265,7 +278,7 @@ def score_people(
     is_on_floor = is_on_floor_alone(beliefs)
     if is_on_floor:
         truth, tracks = as_squares(folder, people, beliefs, robot)
-    counted, around = recount(truth, protocol)
+    counted, around = recounted(truth)
     scores = evaluate(
         counted,
         tracks,
@@ -287,17 +300,21 @@ def evaluate_files(
     min_visible: float | None = None,
     protocol: Protocol | None = None,
     note: Callable[[str], None] = lambda _: None,
+    people_range: PeopleRange | None = None,
 ) -> Scores:
     """Score MOTChallenge or KITTI tracks against ground truth in any supported format of footage.
 
     By default, the people are scored that the truth's benchmark scores; `protocol` chooses another one.
-    People with at most the visible fraction min_visible are ignored. Metrics that need all people are
-    undefined if the ground truth annotates one person only. `note` receives assumptions about the input.
+    People with at most the visible fraction min_visible, and those outside the range, are ignored. Metrics
+    that need all people are undefined if the ground truth annotates one person only. `note` receives
+    assumptions about the input.
     """
     given = load_truth(truth, None, protocol=protocol, tracks=tracks)
     for text in given.notes:
         note(text)
-    options = ScoreOptions(protocol=protocol, min_visible=min_visible)
+    if isinstance(people_range, OcclusionRange):
+        raise BadInput("--per occlusion-time: files do not state their frame rate; give folders of runs")
+    options = ScoreOptions(protocol=protocol, min_visible=min_visible, people_range=people_range)
     return _score(given, read_tracks(tracks), frames, options)
 
 
@@ -321,9 +338,8 @@ def _evaluate_run(folder: Path, options: ScoreOptions) -> ScoredPeople:
 
 def _evaluate_opened(folder: Path, about: Mapping[str, Any], options: ScoreOptions) -> ScoredPeople:
     if "footage" in about or not (folder / "truth.parquet").is_file():
-        return _evaluate_texts(folder, about["frames"], options)
-    image = options.camera or own_camera(folder)
-    by = BoxReference(image, options.boxes or _said(folder, image, about))
+        return _evaluate_texts(folder, about, options)
+    by = reference_of(folder, about, options)
     if by == BoxReference():
         given, found = _read_texts(folder, about["frames"])
         held = (given.truth, found)
@@ -332,13 +348,25 @@ def _evaluate_opened(folder: Path, about: Mapping[str, Any], options: ScoreOptio
     return score_people(folder, held, about["frames"], by, options)
 
 
-def _evaluate_texts(folder: Path, frames: int, options: ScoreOptions) -> ScoredPeople:
+def reference_of(folder: Path, about: Mapping[str, Any], options: ScoreOptions) -> BoxReference:
+    """Return the ground truth boxes to score a run against, given the contents of its run.json."""
+    camera = options.camera or own_camera(folder)
+    return BoxReference(camera, options.boxes or _said(folder, camera, about))
+
+
+def _in_range(truth: TrueBoxes, options: ScoreOptions, occluded: ReadOccluded) -> TrueBoxes:
+    """Return the truth, in which only people in the range are counted, if there is a range."""
+    return truth if options.people_range is None else options.people_range.take(truth, occluded)
+
+
+def _evaluate_texts(folder: Path, about: Mapping[str, Any], options: ScoreOptions) -> ScoredPeople:
     """Score a run of footage, which has one camera and boxes of one kind."""
     for option, value in (("--camera", options.camera), ("--boxes", options.boxes)):
         if value is not None and value != THERMAL:
             raise BadInput(f"{option} {value}: {folder} has no scenario tables; omit the option")
+    frames, rate_hz = about["frames"], about.get("rate_hz", CONTROL_HZ)
     given, found = _read_texts(folder, frames, options.protocol)
-    return ScoredPeople(_score(given, found, frames, options))
+    return ScoredPeople(_score(given, found, frames, options, rate_hz))
 
 
 def _read_texts(folder: Path, frames: int, protocol: Protocol | None = None) -> tuple[GivenTruth, TrackBoxes]:
@@ -364,10 +392,15 @@ def _said(folder: Path, camera: str, about: Mapping[str, Any]) -> BoxKind:
 
 
 def _score(
-    given: GivenTruth, found: TrackBoxes, frames: int | None, options: ScoreOptions = _DEFAULT
+    given: GivenTruth,
+    found: TrackBoxes,
+    frames: int | None,
+    options: ScoreOptions = _DEFAULT,
+    rate_hz: float = CONTROL_HZ,
 ) -> Scores:
+    hidden = 1.0 - given.truth.visible  # the only occlusion that files state
     return evaluate(
-        given.truth,
+        _in_range(given.truth, options, lambda: OccludedShares(hidden, rate_hz)),
         found,
         frames=frames,
         min_visible=options.least_visible(given.protocol),

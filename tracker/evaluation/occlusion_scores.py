@@ -8,6 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,12 +83,38 @@ class LengthRow:
         return self.kept / self.occlusions if self.occlusions else math.nan
 
 
-def find_occlusions(frame: Ints, hidden: Floats) -> list[tuple[int, int]]:
+@dataclass(frozen=True, slots=True, eq=False)
+class OccludedShares:
+    """How much of each person of a ground truth is occluded.
+
+    Attributes:
+        share: (N,) for each row of the truth, the occluded share of the part inside the image; NaN if none of
+            the silhouette lies inside the image, occluded or not.
+        rate_hz: frames per second.
+        every: frames from one image to the next.
+    """
+
+    share: Floats
+    rate_hz: float
+    every: int = 1
+
+
+class _Span(NamedTuple):
+    """A full occlusion: first frame, first frame after it, start of the next one, and its duration."""
+
+    start: int
+    end: int
+    limit: int
+    duration_s: float
+
+
+def find_occlusions(frame: Ints, hidden: Floats, every: int = 1) -> list[tuple[int, int]]:
     """Return the full occlusions of one person that end within the sequence.
 
     Args:
         frame: (N,) increasing frames in which the person is in the image.
         hidden: (N,) occluded share of the part inside the image.
+        every: frames from one image to the next.
 
     Returns:
         First frame with more than `TOTAL_STARTS` occluded, and first later one with less than `SEEN_AGAIN`.
@@ -96,7 +123,7 @@ def find_occlusions(frame: Ints, hidden: Floats) -> list[tuple[int, int]]:
     found: list[tuple[int, int]] = []
     start: int | None = None
     for k in range(len(frame)):
-        if start is not None and frame[k] != frame[k - 1] + 1:
+        if start is not None and frame[k] != frame[k - 1] + every:
             start = None
         if start is None and hidden[k] > TOTAL_STARTS:
             start = int(frame[k])
@@ -106,30 +133,35 @@ def find_occlusions(frame: Ints, hidden: Floats) -> list[tuple[int, int]]:
     return found
 
 
-def score_occlusions(
-    truth: TrueBoxes, tracks: TrackBoxes, hidden: Floats, in_image: NDArray[np.bool_], rate_hz: float
-) -> list[Occlusion]:
-    """Return the identity outcome of every full occlusion in a sequence.
-
-    Args:
-        truth: ground truth of the sequence.
-        tracks: output of a tracker.
-        hidden: (N,) for each row of the truth, the occluded share of the part inside the image.
-        in_image: (N,) for each row, whether any of the silhouette lies inside the image, occluded or not.
-        rate_hz: frames per second.
-    """
+def score_occlusions(truth: TrueBoxes, tracks: TrackBoxes, occluded: OccludedShares) -> list[Occlusion]:
+    """Return the identity outcome of every full occlusion in a sequence."""
     on_person = _ids_on_people(truth, tracks)
     scores = []
-    for person in np.unique(truth.id):
-        rows = np.flatnonzero((truth.id == person) & in_image & truth.counted)
+    for person in np.unique(truth.id).tolist():
         ids = {int(truth.frame[row]): on_person[row] for row in np.flatnonzero(truth.id == person)}
-        spans = find_occlusions(truth.frame[rows], hidden[rows])
-        ends = [*(start for start, _ in spans), truth.last_frame + 1][1:]
-        wholly_hidden = truth.frame[rows][hidden[rows] >= TOTAL_ENDS]
-        for (start, end), limit in zip(spans, ends, strict=True):
-            frames = int(((wholly_hidden >= start) & (wholly_hidden < end)).sum())
-            scores.append(_score(int(person), (start, end, limit), frames / rate_hz, ids, rate_hz))
+        spans = _spans_of(person, truth, occluded)
+        scores += [_score(person, span, ids, occluded.rate_hz) for span in spans]
     return scores
+
+
+def longest_occlusions_s(truth: TrueBoxes, occluded: OccludedShares) -> dict[int, float]:
+    """Return the duration of the longest full occlusion [s] of each person who has one."""
+    spans = {person: _spans_of(person, truth, occluded) for person in np.unique(truth.id).tolist()}
+    return {person: max(span.duration_s for span in found) for person, found in spans.items() if found}
+
+
+def _spans_of(person: int, truth: TrueBoxes, occluded: OccludedShares) -> list[_Span]:
+    """Return the full occlusions of a person."""
+    rows = np.flatnonzero((truth.id == person) & np.isfinite(occluded.share) & truth.counted)
+    frame, hidden = truth.frame[rows], occluded.share[rows]
+    spans = find_occlusions(frame, hidden, occluded.every)
+    limits = [*(start for start, _ in spans), truth.last_frame + 1][1:]
+    wholly_hidden = frame[hidden >= TOTAL_ENDS]
+    image_s = occluded.every / occluded.rate_hz
+    return [
+        _Span(start, end, limit, int(((wholly_hidden >= start) & (wholly_hidden < end)).sum()) * image_s)
+        for (start, end), limit in zip(spans, limits, strict=True)
+    ]
 
 
 def by_length(occlusions: Sequence[Occlusion], edges_s: Sequence[float] = LENGTHS_S) -> list[LengthRow]:
@@ -161,15 +193,14 @@ def _ids_on_people(truth: TrueBoxes, tracks: TrackBoxes) -> list[int | None]:
     return ids
 
 
-def _score(
-    person: int,
-    span: tuple[int, int, int],
-    duration_s: float,
-    ids: dict[int, int | None],
-    rate_hz: float,
-) -> Occlusion:
-    """Score one occlusion, given its first frame, the first after it, and the start of the next one."""
-    start, end, limit = span
+def name_length(from_s: float, to_s: float) -> str:
+    """Return the name of a range of lengths, such as `0.35 to 0.75 s`."""
+    return f"over {from_s:g} s" if math.isinf(to_s) else f"{from_s:g} to {to_s:g} s"
+
+
+def _score(person: int, span: _Span, ids: dict[int, int | None], rate_hz: float) -> Occlusion:
+    """Score one occlusion."""
+    start, end, limit, duration_s = span
     window, patience = round(WINDOW_S * rate_hz), round(PATIENCE_S * rate_hz)
     before = [ids.get(frame) for frame in range(start - window, start)]
     after = [(frame, ids.get(frame)) for frame in range(end, min(end + patience, limit))]

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from peopleboy.sim.truth import events
 from peopleboy.tracker.evaluation import occlusion_scores
 from peopleboy.tracker.evaluation.occlusion_scores import (
+    OccludedShares,
     Occlusion,
     by_length,
     find_occlusions,
@@ -43,7 +44,7 @@ def scene(hidden: list[float], track_ids: list[int | None]) -> list[Occlusion]:
         box=np.tile(BOX, (len(seen), 1)),
         confidence=np.ones(len(seen)),
     )
-    return score_occlusions(truth, tracks, np.array(hidden), np.ones(len(frames), np.bool_), RATE_HZ)
+    return score_occlusions(truth, tracks, OccludedShares(np.array(hidden), RATE_HZ))
 
 
 def test_an_id_that_comes_back_is_kept_and_its_time_is_measured_from_the_end_of_the_occlusion() -> None:
