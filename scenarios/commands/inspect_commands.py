@@ -4,7 +4,7 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,12 +23,15 @@ from peopleboy.scenarios.commands.command_options import (
     print_note,
 )
 from peopleboy.scenarios.commands.completion import complete_scenario
+from peopleboy.scenarios.commands.table_options import TableOptions, plot_runs, table_options
 from peopleboy.wording import counted
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.files.library import LibraryEntry
     from peopleboy.scenarios.running.run_options import RunOptions
+    from peopleboy.scenarios.scores.by_tracker import Groups
     from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions
+    from peopleboy.scenarios.scores.people_ranges import PeopleRange
 
 
 @click.command(cls=FieldsCommand)
@@ -206,12 +209,14 @@ def report(runs: Sequence[Path], out: Path | None, output: Output) -> None:
     "--tracks", type=PATH, help="Track file in MOTChallenge or KITTI format, such as RUN/tracks.txt."
 )
 @options_of("scenarios.scores.evaluate_runs:ScoreOptions", "protocol", "min_visible", "camera", "boxes")
+@table_options
 @output_options
 def evaluate(
     runs: Sequence[Path],
     truth: Path | None,
     tracks: Path | None,
     given: "GivenOptions[ScoreOptions]",
+    table: TableOptions,
     output: Output,
 ) -> None:
     """Score tracks against ground truth, from runs or files.
@@ -221,44 +226,74 @@ def evaluate(
     runs.
 
     Runs of several trackers are compared side by side. The difference of each tracker from the first is
-    computed over runs of the same scenario and seed. Position errors on the floor are in metres, and a
-    tracker without boxes is scored on the floor only. If the robot drove among people, comfort metrics are
-    printed as well.
+    computed over runs of the same scenario and seed, with a 95 % interval and the p-value of the Wilcoxon
+    signed-rank test. --csv, --latex and --markdown print these results as a table.
+
+    Position errors on the floor are in metres, and a tracker without boxes is scored on the floor only. If
+    the robot drove among people, comfort metrics are printed as well.
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in
-    from peopleboy.scenarios.scores.by_tracker import (
-        ScoredRun,
-        comfort_by_tracker,
-        figures_of_all,
-        score_by_tracker,
-    )
-    from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
-    from peopleboy.scenarios.scores.show_scores import print_comfort, print_runs
+    from peopleboy.scenarios.scores.by_tracker import comfort_by_tracker, score_by_tracker
+    from peopleboy.scenarios.scores.show_scores import print_comfort
 
     options = given.make()
-    if options.camera is not None and not runs:
-        raise BadInput("evaluate: --camera is for folders of runs; give --truth RUN/truth/CAMERA.gt.txt")
-    if options.boxes is not None and not runs:
-        raise BadInput(
-            "evaluate: --boxes is for folders of runs; the boxes of --truth are of one kind; leave it out"
-        )
+    _check_files(runs, truth, tracks, options, table)
+    found = [run for folder in runs for run in runs_in(folder)]
+
+    def score(people_range: "PeopleRange | None") -> "Groups":
+        if truth is not None and tracks is not None:
+            return _score_files(truth, tracks, options, people_range)
+        return score_by_tracker(found, replace(options, people_range=people_range))
+
+    def comfort_to_json(groups: "Groups") -> dict[str, object]:
+        comfort = {tracker: one.to_json() for tracker, one in comfort_by_tracker(groups).items()}
+        return {"comfort": comfort} if comfort else {}
+
+    table.show(
+        output,
+        score,
+        lambda groups: print_comfort(comfort_by_tracker(groups)),
+        comfort_to_json,
+        plot_runs(options, score),
+    )
+
+
+def _check_files(
+    runs: Sequence[Path],
+    truth: Path | None,
+    tracks: Path | None,
+    options: "ScoreOptions",
+    table: "TableOptions",
+) -> None:
+    """Refuse options that are for folders of runs together with files, and incomplete pairs of files."""
     if bool(runs) == (truth is not None or tracks is not None):
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
     if runs:
-        found = [run for folder in runs for run in runs_in(folder)]
-        groups = score_by_tracker(found, options)
-    elif truth is None or tracks is None:
-        raise BadInput("evaluate: --truth and --tracks go together")
-    else:
-        scores = evaluate_files(
-            truth, tracks, min_visible=options.min_visible, protocol=options.protocol, note=print_note
+        return
+    if options.camera is not None:
+        raise BadInput("evaluate: --camera is for folders of runs; give --truth RUN/truth/CAMERA.gt.txt")
+    if options.boxes is not None:
+        raise BadInput(
+            "evaluate: --boxes is for folders of runs; the boxes of --truth are of one kind; leave it out"
         )
-        groups = {str(tracks): [ScoredRun(str(tracks), str(tracks), None, scores)]}
-    comfort = comfort_by_tracker(groups)
+    if table.plots is not None:
+        raise BadInput("evaluate: --plots is for folders of runs, which state the occlusions; leave it out")
+    if truth is None or tracks is None:
+        raise BadInput("evaluate: --truth and --tracks go together")
 
-    def show() -> None:
-        print_runs(groups, note=print_note)
-        print_comfort(comfort)
 
-    comforts = {tracker: score.to_json() for tracker, score in comfort.items()}
-    output.results(lambda: figures_of_all(groups) | ({"comfort": comforts} if comforts else {}), show)
+def _score_files(
+    truth: Path, tracks: Path, options: "ScoreOptions", people_range: "PeopleRange | None"
+) -> "Groups":
+    from peopleboy.scenarios.scores.by_tracker import ScoredRun
+    from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
+
+    scores = evaluate_files(
+        truth,
+        tracks,
+        min_visible=options.min_visible,
+        protocol=options.protocol,
+        note=print_note if people_range is None else lambda _: None,
+        people_range=people_range,
+    )
+    return {str(tracks): [ScoredRun(str(tracks), str(tracks), None, scores)]}

@@ -24,6 +24,7 @@ from peopleboy.scenarios.commands.command_options import (
     workers_options,
 )
 from peopleboy.scenarios.commands.completion import complete_scenario
+from peopleboy.scenarios.commands.table_options import TableOptions, plot_runs, table_options
 from peopleboy.tracker.tracker_names import shown_detector, shown_name
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from peopleboy.scenarios.loop.loop import Tick
     from peopleboy.scenarios.running.engine.task import Workers
     from peopleboy.scenarios.running.run_options import RunOptions
+    from peopleboy.scenarios.scores.by_tracker import Groups
+    from peopleboy.scenarios.scores.people_ranges import PeopleRange
     from peopleboy.scenarios.scores.run_scores import RunScores
 
 
@@ -191,12 +194,12 @@ _SEEN: Final = 0.3
 
 
 @click.command(cls=FieldsCommand)
-@click.argument("scenario", required=False, shell_complete=complete_scenario)
+@click.argument("scenarios", metavar="[SCENARIO...]", nargs=-1, shell_complete=complete_scenario)
 @seeds_options(10)
 @click.option(
     "--random-worlds",
     is_flag=True,
-    help="Run one random world per seed instead of a scenario, as in `render --random-worlds`.",
+    help="Run one random world per seed instead of scenarios, as in `render --random-worlds`.",
 )
 @options_of(
     "scenarios.running.run_options:RunOptions",
@@ -208,18 +211,21 @@ _SEEN: Final = 0.3
     overwrite="Replace earlier runs.",
 )
 @workers_options
+@table_options
 @output_options
 def sweep(
-    scenario: str | None,
+    scenarios: Sequence[str],
     seeds: range,
     random_worlds: bool,
     given: "GivenOptions[RunOptions]",
     workers: "Workers",
+    table: TableOptions,
     output: Output,
 ) -> None:
-    """Run and score a scenario with many seeds, or random worlds.
+    """Run and score scenarios with many seeds, or random worlds.
 
-    A sweep writes no recordings. If it is interrupted, run the command again to resume it. With
+    SCENARIO can also be a suite, which stands for its scenarios; `peopleboy run SUITE` uses the suite's own
+    seeds. A sweep writes no recordings. If it is interrupted, run the command again to resume it. With
     --random-worlds, two scores are printed: one for all people, and one for people with a visible fraction
     above 30 %. The second is useful because many people in random worlds are occluded.
     """
@@ -228,26 +234,33 @@ def sweep(
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
     from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions
     from peopleboy.scenarios.scores.show_scores import print_runs
+    from peopleboy.tracker.evaluation.table import FIGURES
 
     _check_physics(given)
     options = given.make(seed=0, out=given.out or Path("runs"))
-    if (scenario is None) is not random_worlds:
-        raise BadInput("sweep: give a scenario, or --random-worlds, but not both")
-    if scenario is None:
+    if bool(scenarios) is random_worlds:
+        raise BadInput("sweep: give scenarios, or --random-worlds, but not both")
+    if random_worlds:
         runs = sweep_worlds(seeds, options, workers)
     else:
-        runs = run_seeds(scenario, seeds, options, workers)
-    groups = score_by_tracker(runs)
-    if not random_worlds:
-        output.results(lambda: figures_of_all(groups), lambda: print_runs(groups, note=print_note))
-        return
-    seen = score_by_tracker(runs, ScoreOptions(min_visible=_SEEN))
+        runs = run_seeds(scenarios, seeds, options, workers)
 
-    def show() -> None:
-        print_runs(groups, note=print_note)
-        print_runs(seen, f"people with a visible fraction above {_SEEN:.0%}")
+    def score(people_range: "PeopleRange | None") -> "Groups":
+        return score_by_tracker(runs, ScoreOptions(people_range=people_range))
 
-    output.results(lambda: figures_of_all(groups) | {"visible": figures_of_all(seen)}, show)
+    def score_seen() -> "Groups":
+        return score_by_tracker(runs, ScoreOptions(min_visible=_SEEN))
+
+    def show_seen(_groups: "Groups") -> None:
+        if random_worlds and table.per is None:
+            title = f"people with a visible fraction above {_SEEN:.0%}"
+            print_runs(score_seen(), title, figures=table.figures or FIGURES)
+
+    def seen_to_json(_groups: "Groups") -> dict[str, object]:
+        asked = table.figures or FIGURES
+        return {"visible": figures_of_all(score_seen(), asked)} if random_worlds else {}
+
+    table.show(output, score, show_seen, seen_to_json, plot_runs(ScoreOptions(), score))
 
 
 @click.command(cls=FieldsCommand)

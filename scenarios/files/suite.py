@@ -1,6 +1,6 @@
 """Suites: lists of scenarios with seeds, such as the data sets modelled on those of the thesis."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -92,6 +92,28 @@ def runs_of(suite: SuiteSpec, *, with_drives: bool = True) -> Iterator[SuiteRun]
             is_driven = entry.repeats_drive and with_drives
             drive = read_drive(drive_path(suite.name, entry.scenario, seed)) if is_driven else None
             yield SuiteRun(scenario if drive is None else scenario.driven(drive), seed)
+
+
+def scenarios_of(names: Sequence[str]) -> list[Scenario]:
+    """Load scenarios by name or path; the name of a suite stands for the scenarios of its runs.
+
+    Raises:
+        BadInput: a scenario is unknown or invalid, or two different ones have the same name.
+    """
+    found: dict[str, Scenario] = {}
+    for name in names:
+        loaded = _scenarios_in(name) if name in suite_names() else [load_scenario(name)]
+        for scenario in loaded:
+            before = found.setdefault(scenario.name, scenario)
+            if before.resolved(before.seed) != scenario.resolved(before.seed):
+                raise BadInput(f"{name}: another scenario is also called {scenario.name!r}; leave one out")
+    return list(found.values())
+
+
+def _scenarios_in(suite: str) -> list[Scenario]:
+    """Return the different scenarios of a suite's runs, without recorded drives."""
+    runs = runs_of(load_suite(suite), with_drives=False)
+    return list({one.scenario.name: one.scenario for one in runs}.values())
 
 
 def drive_path(suite: str, scenario: str, seed: int) -> Path:

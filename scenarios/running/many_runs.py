@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.suite import load_suite, runs_of
+from peopleboy.scenarios.files.suite import load_suite, runs_of, scenarios_of
 from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.scenarios.random_worlds.random_world import LASTS_S, random_scenario, world_name
 from peopleboy.scenarios.run_folder.atomic_output import check_out
@@ -20,6 +19,7 @@ from peopleboy.scenarios.running.frame_cache import Film, film
 from peopleboy.scenarios.running.run import is_finished, run, tracker_name
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.tracker.tracker_names import is_detection_file, split_name
+from peopleboy.wording import counted
 
 _RATE_HZ = 15
 _ARRIVAL_S = 30.0  # [s] timeout for a run of another machine to appear in a shared folder
@@ -179,25 +179,28 @@ def films_of(name: str, folder: Path) -> Iterator[Film]:
         yield film(one.scenario, one.seed, folder)
 
 
-def sweep(scenario: str, seeds: Iterable[int], options: RunOptions, workers: Workers) -> list[Path]:
-    """Run a scenario once per seed, without recordings; a killed sweep resumes when it is called again.
+def sweep(
+    scenarios: Sequence[str], seeds: Sequence[int], options: RunOptions, workers: Workers
+) -> list[Path]:
+    """Run scenarios once per seed, without recordings; a killed sweep resumes when it is called again.
 
     Args:
-        scenario: name or path.
+        scenarios: names or paths of scenarios, or names of suites, which stand for their scenarios.
         seeds: seeds, one per run.
         options: options of a run; `out` is the folder of the sweep, and `seed` is not used.
         workers: workers that execute the runs.
 
     Returns:
-        The folders out/SCENARIO-SEED, in the order of the seeds.
+        The folders out/SCENARIO-SEED, in the order of the scenarios, then of the seeds.
 
     Raises:
         BadInput: a run is invalid, or the folder of a run holds another complete run.
         TasksFailed: some runs failed.
     """
-    loaded = load_scenario(scenario)
-    runs = ((loaded, seed, f"{loaded.name}-{seed}") for seed in seeds)
-    return _run_all(runs, options, workers, loaded.name)
+    loaded = scenarios_of(scenarios)
+    runs = ((scenario, seed, f"{scenario.name}-{seed}") for scenario in loaded for seed in seeds)
+    title = loaded[0].name if len(loaded) == 1 else counted(len(loaded), "scenario")
+    return _run_all(runs, options, workers, title)
 
 
 def sweep_worlds(seeds: Iterable[int], options: RunOptions, workers: Workers) -> list[Path]:

@@ -9,6 +9,7 @@ from typing import Final
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.scores.bootstrap import PairedDifference
 from peopleboy.scenarios.scores.by_tracker import Groups, ScoredRun, differences
+from peopleboy.scenarios.scores.people_ranges import OCCLUSION_RANGES, VISIBLE_RANGES, PeopleRange
 from peopleboy.scenarios.scores.summaries import Summary, summarise
 from peopleboy.tracker.evaluation.table import Figure, parse_figures
 
@@ -133,3 +134,30 @@ _NAMES: Final[Mapping[Per, Callable[[ScoredRun], str]]] = {
     Per.SEQUENCE: _sequence,
     Per.RUN: lambda run: run.name,
 }
+
+
+def score_parts(score: Callable[[PeopleRange | None], Groups], per: Per | None) -> dict[str, Groups]:
+    """Score the runs in parts, and all together.
+
+    Args:
+        score: scores the runs, for people in a range or for all.
+        per: what the parts are about; None for all together alone. Runs without a person in a range have no
+            part in it.
+
+    Raises:
+        BadInput: as `score`, or a run does not state its scenario.
+    """
+    whole = score(None)
+    if per is None:
+        return {ALL: whole}
+    if per in _NAMES:
+        return split_runs(whole, per)
+    ranges = VISIBLE_RANGES if per is Per.VISIBLE_FRACTION else OCCLUSION_RANGES
+    parts = {one.name: keep_targets(score(one)) for one in ranges}
+    return {**{name: groups for name, groups in parts.items() if groups}, ALL: whole}
+
+
+def keep_targets(groups: Groups) -> Groups:
+    """Return the runs that have a person to be found, and the trackers that have such runs."""
+    kept = {tracker: [run for run in runs if run.scores.counts.targets] for tracker, runs in groups.items()}
+    return {tracker: runs for tracker, runs in kept.items() if runs}

@@ -3,6 +3,7 @@
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from itertools import zip_longest
 
 from rich.console import Console
 from rich.table import Table
@@ -11,7 +12,9 @@ from peopleboy.scenarios.scores.bootstrap import PairedDifference
 from peopleboy.scenarios.scores.by_tracker import Difference, Groups, differences
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.drive_record import Row
+from peopleboy.scenarios.scores.score_table import ScoreTable
 from peopleboy.scenarios.scores.summaries import summarise
+from peopleboy.scenarios.scores.write_table import caption, table_cells
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, Figure, rows
 from peopleboy.wording import counted
@@ -70,9 +73,27 @@ def print_runs(
             print_scores(runs[0].scores, who, figures)
         else:
             _print_spread(tracker, [run.scores for run in runs], who, figures)
+    print_notes(groups, note)
+
+
+def print_notes(groups: Groups, note: Callable[[str], None]) -> None:
+    """Call `note` with the caveats of each tracker's metrics, once for all its runs."""
     for tracker, runs in groups.items():
         for line in next((run.notes for run in runs if run.notes), ()):
             note(f"{tracker}: {line}")
+
+
+def print_table(table: ScoreTable) -> None:
+    """Print a table of metrics, with its parts apart."""
+    heads, rows = table_cells(table)
+    shown = Table(*heads[: len(heads) - len(table.figures)], box=None, pad_edge=False)
+    for head in heads[len(heads) - len(table.figures) :]:
+        shown.add_column(head, justify="right")
+    for row, cells, after in zip_longest(table.rows, rows, table.rows[1:]):
+        shown.add_row(*cells, end_section=after is not None and after.part != row.part)
+    console = Console() if sys.stdout.isatty() else Console(width=60 + 36 * len(heads))
+    console.print(shown)
+    console.print(f"\n{caption(table)}\n", soft_wrap=True)
 
 
 def _print_spread(tracker: str, sequences: Sequence[Scores], who: str, figures: Sequence[Figure]) -> None:
