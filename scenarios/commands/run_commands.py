@@ -292,11 +292,16 @@ def compare(
 ) -> None:
     """Compare controllers on the same scenarios.
 
-    The command prints metrics with confidence intervals, and writes tables and plots. The default SCENARIO is
-    single_follow. If a comparison is interrupted, run the command again to resume it.
+    The command prints metrics with confidence intervals, and their differences from the first controller with
+    a paired test. It writes tables and plots, for each scenario and for all together. SCENARIO can also be a
+    suite, which stands for its scenarios; the default is single_follow.
+
+    If a comparison is interrupted, run the command again to resume it.
     """
-    from peopleboy.scenarios.files.load import load_scenario
+    from peopleboy.scenarios.files.suite import scenarios_of
     from peopleboy.scenarios.running.compare_controllers import (
+        Controller,
+        Figures,
         compare,
         keep_comparison,
         parse_controller,
@@ -304,14 +309,21 @@ def compare(
     )
 
     _check_physics(given)
-    scenarios = scenarios or ("single_follow",)
+    loaded = scenarios_of(scenarios or ("single_follow",))
     chosen = [parse_controller(text) for text in controllers.split(",")]
-    names = [load_scenario(scenario).name for scenario in scenarios]
     out, found = given.out or Path("runs") / "compare", []
-    for scenario, name in zip(scenarios, names, strict=True):
-        runs = compare(scenario, chosen, seeds, given.make(seed=0, out=out / name), workers)
-        found.append(keep_comparison(name, runs, out / name))
+    compared: dict[str, dict[Controller, list[Figures]]] = {}
+    for scenario in loaded:
+        runs = compare(scenario, chosen, seeds, given.make(seed=0, out=out / scenario.name), workers)
+        compared[scenario.name] = runs
+    together_name = f"all {len(loaded)} scenarios"
+    if len(loaded) > 1:
+        together = {one: [run for runs in compared.values() for run in runs[one]] for one in chosen}
+        compared[together_name] = together
+    for name, runs in compared.items():
+        folder = out if name == together_name else out / name
+        found.append(keep_comparison(name, runs, folder))
         if output.is_text:
             show_comparison(name, runs)
-            click.echo(out / name / "comparison.png")
+            click.echo(folder / "comparison.png")
     output.results(lambda: {"comparisons": found}, lambda: None)

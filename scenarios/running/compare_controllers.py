@@ -18,11 +18,12 @@ from rich.table import Table
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run_options import RunOptions
-from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
+from peopleboy.scenarios.scores.bootstrap import Interval, PairedDifference, bootstrap, compare_pairs
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
@@ -60,7 +61,7 @@ def parse_controller(text: str) -> Controller:
 
 
 def compare(
-    scenario: str,
+    scenario: str | Path | Scenario,
     controllers: Sequence[Controller],
     seeds: Iterable[int],
     options: RunOptions,
@@ -71,7 +72,7 @@ def compare(
     A killed comparison resumes when it is called again.
 
     Args:
-        scenario: name or path.
+        scenario: name, path, or a loaded scenario.
         controllers: the controllers to compare.
         seeds: seeds, the same for all controllers.
         options: options of a run; `out` is the folder of all runs, each in CONTROLLER-SEED, and `boxes` is
@@ -121,6 +122,23 @@ def intervals(runs: Sequence[Figures], rng: np.random.Generator) -> dict[str, In
     return {name: bootstrap([figures.get(name, math.nan) for figures in runs], rng) for name in names}
 
 
+def paired_differences(
+    runs: Mapping[Controller, Sequence[Figures]],
+) -> dict[Controller, dict[str, PairedDifference]]:
+    """Compare the metrics of every other controller with those of the first, run by run."""
+    (_, of_first), *others = runs.items()
+    return {controller: _differences(of_first, of_other) for controller, of_other in others}
+
+
+def _differences(of_first: Sequence[Figures], of_other: Sequence[Figures]) -> dict[str, PairedDifference]:
+    names = list(dict.fromkeys(name for figures in (*of_first, *of_other) for name in figures))
+    pairs = list(zip(of_first, of_other, strict=True))
+    return {
+        name: compare_pairs([two.get(name, math.nan) - one.get(name, math.nan) for one, two in pairs])
+        for name in names
+    }
+
+
 def figures_of(folder: Path) -> dict[str, float]:
     """Read the metrics of how the robot drove from a run's folder; booleans become 1 and 0."""
     metrics = read_json(folder / "metrics.json")
@@ -141,16 +159,23 @@ _DOTS = np.random.default_rng(0).uniform(-0.12, 0.12, 1000)
 
 def show_comparison(scenario: str, runs: Mapping[Controller, Sequence[Figures]]) -> None:
     """Print the table."""
-    means = _means(runs)
-    seeds = len(next(iter(runs.values())))
-    amount = f"{seeds} seeds: mean [95 % interval]" if seeds > 1 else "one seed, without an interval"
+    means, apart = _means(runs), paired_differences(runs)
+    count = len(next(iter(runs.values())))
+    amount = f"{count} runs each: mean [95 % interval]" if count > 1 else "one run each, without an interval"
+    first = next(iter(runs))
     table = Table(title=f"{scenario}, {amount}", title_justify="left", box=None)
     table.add_column("figure")
     for controller in means:
         table.add_column(str(controller), justify="right")
+    for controller in apart:
+        table.add_column(f"{controller} - {first}", justify="right")
     for name in _names(means):
-        table.add_row(_label(name), *[_cell(of_one.get(name), name) for of_one in means.values()])
-    Console(width=None if sys.stdout.isatty() else 44 + 30 * len(means)).print(table)
+        cells = [_cell(of_one.get(name), name) for of_one in means.values()]
+        table.add_row(_label(name), *cells, *[_apart(of_one[name], name) for of_one in apart.values()])
+    width = None if sys.stdout.isatty() else 44 + 30 * len(means) + 60 * len(apart)
+    Console(width=width).print(table)
+    if count > 1 and apart:
+        print("Differences are of runs of the same scenario and seed; p is of the Wilcoxon signed-rank test.")
 
 
 def keep_comparison(
@@ -197,6 +222,11 @@ def _cell(interval: Interval | None, name: str) -> str:
     return f"{mean:.2f} [{low:.2f}, {high:.2f}]" if interval.is_known else f"{mean:.2f}"
 
 
+def _apart(apart: PairedDifference, name: str) -> str:
+    text = _cell(apart.interval, name)
+    return text if math.isnan(apart.p) else f"{text}, p = {apart.p:.2g}"
+
+
 def _content(
     scenario: str,
     runs: Mapping[Controller, Sequence[Figures]],
@@ -211,6 +241,15 @@ def _content(
             }
             for controller, of_one in runs.items()
         },
+        "differences": [
+            {
+                "controller": str(controller),
+                "from": str(next(iter(runs))),
+                "mean": {name: one.interval.to_json() for name, one in of_one.items()},
+                "p": {name: _or_none(one.p) for name, one in of_one.items()},
+            }
+            for controller, of_one in paired_differences(runs).items()
+        ],
     }
 
 
@@ -225,12 +264,12 @@ def _draw(
     runs: Mapping[Controller, Sequence[Figures]],
     means: Mapping[Controller, Mapping[str, Interval]],
 ) -> None:
-    """Draw a panel for each metric: a dot for every seed, and the mean with its interval next to them."""
+    """Draw a panel for each metric: a dot for every run, and the mean with its interval next to them."""
     rows = max(math.ceil(len(names) / _COLUMNS), 1)
     figure = Figure(figsize=(3.6 * _COLUMNS, 0.8 + rows * (1.1 + 0.32 * len(runs))), layout="constrained")
     FigureCanvasAgg(figure)
-    seeds = len(next(iter(runs.values())))
-    amount = "every seed, and the mean with its 95 % interval" if seeds > 1 else "one seed"
+    is_many = len(next(iter(runs.values()))) > 1
+    amount = "every run, and the mean with its 95 % interval" if is_many else "one run each"
     figure.suptitle(f"{scenario}: {amount}")
     grid = figure.subplots(rows, _COLUMNS, squeeze=False)
     for axes, name in zip(grid.flat, names, strict=False):

@@ -15,7 +15,7 @@ from peopleboy.scenarios.scores.by_tracker import Groups
 from peopleboy.scenarios.scores.people_ranges import VISIBLE_RANGES
 from peopleboy.scenarios.scores.score_table import keep_targets
 from peopleboy.scenarios.scores.summaries import summarise
-from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, by_length, name_length
+from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, Occlusion, by_length
 from peopleboy.tracker.evaluation.table import parse_figures
 
 FORMATS: Final = ("svg", "pdf")
@@ -90,7 +90,7 @@ def draw_plots(
         by_visibility: the runs, scored for each of `VISIBLE_RANGES`.
     """
     kept = {tracker: identity_kept(of_tracker) for tracker, of_tracker in occlusions.items()}
-    lengths = [_short(name_length(row.from_s, row.to_s)) for row in by_length(())]
+    lengths = [f"< {high:g}" for high in LENGTHS_S[1:-1]] + [f"> {LENGTHS_S[-2]:g}"]
     hota = {tracker: hota_by_visibility(by_visibility, tracker) for tracker in occlusions}
     fractions = [f"{100 * one.low:.0f}-{100 * one.high:.0f}" for one in VISIBLE_RANGES]
     folder.mkdir(parents=True, exist_ok=True)
@@ -98,10 +98,6 @@ def draw_plots(
         *_save(folder / "identity_kept", kept, lengths, ("full occlusion [s]", "identity kept [%]")),
         *_save(folder / "hota_by_visibility", hota, fractions, ("visible fraction [%]", "HOTA [%]")),
     ]
-
-
-def _short(name: str) -> str:
-    return name.removesuffix(" s").replace(" to ", "-").replace("over ", "> ")
 
 
 def _save(

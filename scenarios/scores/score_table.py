@@ -69,11 +69,16 @@ class ScoreTable:
     rows: Sequence[TableRow]
 
     def best(self, row: TableRow, column: int) -> bool:
-        """Return whether a tracker has the best mean of its part in a column, among several trackers."""
+        """Return whether a tracker has the best mean of its part in a column, among several trackers.
+
+        Means over different numbers of runs have no best.
+        """
         figure = self.figures[column]
         if row.other or not figure.better:
             return False
         rivals = [one for one in self.rows if one.part == row.part and not one.other]
+        if len({one.runs for one in rivals}) > 1:
+            return False
         means = {one.tracker: figure.better * _mean(one.cells[column]) for one in rivals}
         known = [mean for mean in means.values() if not math.isnan(mean)]
         return len(known) > 1 and means[row.tracker] == max(known) > min(known)

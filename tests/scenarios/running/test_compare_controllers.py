@@ -13,6 +13,7 @@ from peopleboy.scenarios.running.compare_controllers import (
     compare,
     intervals,
     keep_comparison,
+    paired_differences,
     parse_controller,
     show_comparison,
 )
@@ -87,6 +88,9 @@ def test_a_comparison_is_printed_drawn_and_kept(tmp_path, capsys):
     assert "within 1.2 m, s" in printed
     assert "75.00 [50.00, 100.00]" in printed
     assert content == json.loads((tmp_path / "comparison.json").read_text())
+    (apart,) = content["differences"]
+    assert (apart["controller"], apart["from"]) == ("b@truth", "a@truth")
+    assert set(apart["p"].values()) == {None}  # the two share no metric
     kept = content["controllers"]
     assert kept["b@truth"]["mean"]["lateral_m"] == pytest.approx([0.1] * 3)
     assert kept["a@truth"]["runs"][1]["jerk_m_s3"] is None
@@ -95,6 +99,16 @@ def test_a_comparison_is_printed_drawn_and_kept(tmp_path, capsys):
         "followed",
         "jerk_m_s3",
     }
+
+
+def test_controllers_are_compared_run_by_run():
+    one = [{"followed": value} for value in (0.5, 0.6, 0.4, 0.7)]
+    other = [{"followed": value} for value in (0.6, 0.7, 0.5, 0.8)]
+    runs = {Controller("a", "truth"): one, Controller("b", "truth"): other}
+    (differences,) = paired_differences(runs).values()
+    apart = differences["followed"]
+    assert apart.interval.mean == pytest.approx(0.1)
+    assert apart.p == pytest.approx(2 / 2**4)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from peopleboy.scenarios.cli import cli
 from peopleboy.scenarios.files import library as listed
 from peopleboy.scenarios.files import suite as suites
 from peopleboy.scenarios.files.library import suite_names
-from peopleboy.scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, runs_of
+from peopleboy.scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, runs_of, scenarios_of
 from peopleboy.scenarios.running import many_runs as module
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import run_suite
@@ -80,6 +80,17 @@ def test_a_suite_skips_complete_runs_and_redoes_those_that_were_cut_off(tmp_path
     assert json.loads((second / "run.json").read_text())["status"] == "complete"
     with refused(first, "'detection'"):
         run_suite("tiny", RunOptions(seed=0, out=tmp_path, tracker="thesis"), Workers())
+
+
+def test_a_suite_stands_for_its_scenarios_among_others_each_once(tmp_path: Path) -> None:
+    of_suite = {one.scenario.name for one in runs_of(load_suite("dataset3"), with_drives=False)}
+    names = [one.name for one in scenarios_of(["crossing_2", "dataset3", "crossing_2"])]
+    assert set(names) == of_suite | {"crossing_2"}
+    assert len(names) == len(set(names))
+    other = tmp_path / "other.yaml"
+    other.write_text("name: crossing_2\ndescription: Another one.\nlike: crossing_3\n", encoding="utf-8")
+    with refused("crossing_2", "another scenario is also called"):
+        scenarios_of(["crossing_2", str(other)])
 
 
 def test_an_unknown_suite_or_data_set_is_refused() -> None:
