@@ -169,9 +169,13 @@ def plain_figures(columns: Sequence[Column]) -> PageTable:
 
 
 def all_figures(columns: Sequence[Column]) -> PageTable:
-    """Show every metric that is defined for some run, with its usual name."""
+    """Show every metric that is defined for some run, with its usual name.
+
+    Latency is left to `evaluate`: the page of a run is the same each time that it is simulated.
+    """
     every = [scores for column in columns for scores in column.scores]
-    defined = [f for f in FIGURES if f.group not in IF_KNOWN or any(map(f.is_defined_for, every))]
+    lasting = [f for f in FIGURES if f.group != "latency"]
+    defined = [f for f in lasting if f.group not in IF_KNOWN or any(map(f.is_defined_for, every))]
     return _figures(columns, [(f.name, f.meaning, f.unit, _values(columns, f)) for f in defined])
 
 

@@ -1,6 +1,8 @@
 """Simulate, track and evaluate people around a mobile robot with thermal, colour and depth cameras.
 
-Importing the package registers its gymnasium environments. The names below are loaded at their first use.
+Importing the package registers its gymnasium environments. All public names are loaded at their first use.
+`__all__` and `dir()` list those to start with; the others are types of arguments and results, and parts of
+the loop.
 """
 
 from importlib import import_module
@@ -11,29 +13,40 @@ from peopleboy.registration import register_environments
 if TYPE_CHECKING:
     __version__: str
     from peopleboy.bad_input import BadInput
-    from peopleboy.behaviours.behaviour import Behaviour, Command
-    from peopleboy.behaviours.make_behaviour import make_behaviour
-    from peopleboy.behaviours.percept import Percept
-    from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
-    from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+    from peopleboy.behaviours.behaviour import Behaviour as Behaviour
+    from peopleboy.behaviours.behaviour import Command as Command
+    from peopleboy.behaviours.make_behaviour import make_behaviour as make_behaviour
+    from peopleboy.behaviours.percept import Percept as Percept
+    from peopleboy.geometry.camera_calibration import Calibration as Calibration
+    from peopleboy.geometry.camera_calibration import PinholeCalibration as PinholeCalibration
+    from peopleboy.scenarios.environments.environment import PeopleBoyEnv as PeopleBoyEnv
     from peopleboy.scenarios.files.load import load_scenario
-    from peopleboy.scenarios.files.scenario import Scenario
-    from peopleboy.scenarios.loop.loop import Tick, closed_loop
+    from peopleboy.scenarios.files.scenario import Scenario as Scenario
+    from peopleboy.scenarios.loop.loop import Tick as Tick
+    from peopleboy.scenarios.loop.loop import closed_loop as closed_loop
     from peopleboy.scenarios.loop.scenario_world import World
     from peopleboy.scenarios.running.evaluate_run import evaluate_run
-    from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
+    from peopleboy.scenarios.running.frame_cache import Film as Film
+    from peopleboy.scenarios.running.frame_cache import film as film
+    from peopleboy.scenarios.running.frame_cache import frames_of as frames_of
     from peopleboy.scenarios.running.run import run
     from peopleboy.scenarios.running.run_options import RunOptions
-    from peopleboy.scenarios.scores.run_scores import RunScores
-    from peopleboy.sim.observation import Observation
-    from peopleboy.sim.truth.truth import PersonTruth, Truth
-    from peopleboy.sim.world_config import WorldConfig
-    from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+    from peopleboy.scenarios.scores.run_scores import RunScores as RunScores
+    from peopleboy.sim.observation import Observation as Observation
+    from peopleboy.sim.truth.truth import PersonTruth as PersonTruth
+    from peopleboy.sim.truth.truth import Truth as Truth
+    from peopleboy.sim.world_config import WorldConfig as WorldConfig
+    from peopleboy.tracker.evaluation.evaluate import Scores as Scores
+    from peopleboy.tracker.evaluation.evaluate import evaluate
     from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-    from peopleboy.tracker.footage.box_kinds import BoxKind
-    from peopleboy.tracker.frame import Frame, Odometry
-    from peopleboy.tracker.track import FloorPlace, Status, Track
-    from peopleboy.tracker.trackers import Tracker, make_tracker
+    from peopleboy.tracker.footage.box_kinds import BoxKind as BoxKind
+    from peopleboy.tracker.frame import Frame
+    from peopleboy.tracker.frame import Odometry as Odometry
+    from peopleboy.tracker.track import FloorPlace as FloorPlace
+    from peopleboy.tracker.track import Status as Status
+    from peopleboy.tracker.track import Track
+    from peopleboy.tracker.trackers import Tracker as Tracker
+    from peopleboy.tracker.trackers import make_tracker
 
 _HOMES: Final = {
     "BadInput": "bad_input",
@@ -76,39 +89,15 @@ _HOMES: Final = {
 
 __all__ = [
     "BadInput",
-    "Behaviour",
-    "BoxKind",
-    "Calibration",
-    "Command",
-    "Film",
-    "FloorPlace",
     "Frame",
-    "Observation",
-    "Odometry",
-    "PeopleBoyEnv",
-    "Percept",
-    "PersonTruth",
-    "PinholeCalibration",
     "RunOptions",
-    "RunScores",
-    "Scenario",
-    "Scores",
-    "Status",
-    "Tick",
     "Track",
     "TrackBoxes",
-    "Tracker",
     "TrueBoxes",
-    "Truth",
     "World",
-    "WorldConfig",
-    "closed_loop",
     "evaluate",
     "evaluate_run",
-    "film",
-    "frames_of",
     "load_scenario",
-    "make_behaviour",
     "make_tracker",
     "run",
 ]
@@ -130,4 +119,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, "__version__"})
+    return sorted([*__all__, "__version__"])
