@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from peopleboy.scenarios.scores.by_tracker import Groups
     from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions
     from peopleboy.scenarios.scores.people_ranges import PeopleRange
-    from peopleboy.scenarios.scores.score_table import ScoreTable
+    from peopleboy.scenarios.scores.tables.score_table import ScoreTable
     from peopleboy.tracker.evaluation.table import Figure
 
 Score = Callable[["PeopleRange | None"], "Groups"]
@@ -62,9 +62,15 @@ class TableOptions:
             BadInput: as `score`.
         """
         from peopleboy.scenarios.scores.by_tracker import figures_of_all
-        from peopleboy.scenarios.scores.score_table import ALL, PAPER_FIGURES, Per, make_table, score_parts
         from peopleboy.scenarios.scores.show_scores import print_notes, print_runs, print_table
-        from peopleboy.scenarios.scores.write_table import WRITERS
+        from peopleboy.scenarios.scores.tables.score_table import (
+            ALL,
+            PAPER_FIGURES,
+            Per,
+            make_table,
+            score_parts,
+        )
+        from peopleboy.scenarios.scores.tables.write_table import WRITERS
         from peopleboy.tracker.evaluation.table import FIGURES
 
         per = None if self.per is None else Per(self.per)
@@ -106,9 +112,9 @@ def plot_runs(options: "ScoreOptions", score: Score) -> Callable[[Path, "Groups"
     """Return a function that plots identity kept and HOTA of grouped runs into a folder."""
 
     def draw(folder: Path, groups: "Groups") -> list[Path]:
-        from peopleboy.scenarios.scores.identity_kept import occlusions_of
         from peopleboy.scenarios.scores.people_ranges import VISIBLE_RANGES
-        from peopleboy.scenarios.scores.score_plots import draw_plots
+        from peopleboy.scenarios.scores.tables.identity_kept import occlusions_of
+        from peopleboy.scenarios.scores.tables.score_plots import draw_plots
 
         named = {tracker: [Path(run.name) for run in runs] for tracker, runs in groups.items()}
         occlusions = {tracker: occlusions_of(runs, options) for tracker, runs in named.items()}

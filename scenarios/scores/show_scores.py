@@ -12,9 +12,9 @@ from peopleboy.scenarios.scores.bootstrap import PairedDifference
 from peopleboy.scenarios.scores.by_tracker import Difference, Groups, differences
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.drive_record import Row
-from peopleboy.scenarios.scores.score_table import ScoreTable
 from peopleboy.scenarios.scores.summaries import summarise
-from peopleboy.scenarios.scores.write_table import caption, table_cells
+from peopleboy.scenarios.scores.tables.score_table import ScoreTable
+from peopleboy.scenarios.scores.tables.write_table import caption, table_cells
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, Figure, rows
 from peopleboy.wording import counted

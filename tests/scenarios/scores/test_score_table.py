@@ -12,9 +12,9 @@ import pytest
 
 from peopleboy.scenarios.scores.by_tracker import Groups, ScoredRun
 from peopleboy.scenarios.scores.people_ranges import OCCLUSION_RANGES, VISIBLE_RANGES, PeopleRange
-from peopleboy.scenarios.scores.score_plots import draw_plots, identity_kept
-from peopleboy.scenarios.scores.score_table import ALL, Per, ScoreTable, make_table, score_parts
-from peopleboy.scenarios.scores.write_table import escape_latex, to_csv, to_latex, to_markdown
+from peopleboy.scenarios.scores.tables.score_plots import draw_plots, identity_kept
+from peopleboy.scenarios.scores.tables.score_table import ALL, Per, ScoreTable, make_table, score_parts
+from peopleboy.scenarios.scores.tables.write_table import escape_latex, to_csv, to_latex, to_markdown
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.occlusion_scores import OccludedShares, Occlusion
 from peopleboy.tracker.evaluation.sequence import TrueBoxes

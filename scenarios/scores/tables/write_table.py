@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from typing import Final, NamedTuple
 
 from peopleboy.scenarios.scores.bootstrap import LEVEL, PairedDifference
-from peopleboy.scenarios.scores.score_table import ScoreTable, TableRow
 from peopleboy.scenarios.scores.summaries import Summary
+from peopleboy.scenarios.scores.tables.score_table import ScoreTable, TableRow
 from peopleboy.tracker.evaluation.table import Figure
 
 _CSV_COLUMNS: Final = (

@@ -13,8 +13,8 @@ from scipy import stats
 from peopleboy.scenarios.scores.bootstrap import LEVEL, Interval
 from peopleboy.scenarios.scores.by_tracker import Groups
 from peopleboy.scenarios.scores.people_ranges import VISIBLE_RANGES
-from peopleboy.scenarios.scores.score_table import keep_targets
 from peopleboy.scenarios.scores.summaries import summarise
+from peopleboy.scenarios.scores.tables.score_table import keep_targets
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, Occlusion, by_length
 from peopleboy.tracker.evaluation.table import parse_figures
 

@@ -1,0 +1,1 @@
+"""Tables and plots of metrics, for papers and for the terminal."""
