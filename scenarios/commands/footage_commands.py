@@ -120,7 +120,7 @@ def _rgbd(given: "GivenOptions[RgbdOptions]", camera: "GivenOptions[RgbdCamera]"
 
 def _print(tracked: "Tracked", options: "TrackOptions", output: Output) -> None:
     from peopleboy.scenarios.footage.track_footage import outcome_lines
-    from peopleboy.scenarios.scores.show_scores import print_scores
+    from peopleboy.scenarios.scores.tables.show_scores import print_scores
     from peopleboy.tracker.evaluation.table import to_json
 
     for note in tracked.notes:
@@ -163,7 +163,7 @@ def import_tracks(run: Path, tracks: Path, given: "GivenOptions[TrackImport]", o
     from peopleboy.scenarios.finished_runs.import_tracks import imports_by_sequence
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.scores.run_scores import headline
-    from peopleboy.scenarios.scores.show_scores import print_scores
+    from peopleboy.scenarios.scores.tables.show_scores import print_scores
 
     out = given.out or run.resolve().parent / f"{_title(run, tracks)}-{given.name}"
     what = given.make(run=run, tracks=tracks, out=out)

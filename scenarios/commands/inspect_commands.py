@@ -234,7 +234,7 @@ def evaluate(
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in
     from peopleboy.scenarios.scores.by_tracker import comfort_by_tracker, score_by_tracker
-    from peopleboy.scenarios.scores.show_scores import print_comfort
+    from peopleboy.scenarios.scores.tables.show_scores import print_comfort
 
     options = given.make()
     _check_files(runs, truth, tracks, options, table)

@@ -147,7 +147,7 @@ def _run_one(scenario: "Scenario", options: "RunOptions", output: Output) -> Non
 def _show(scores: "RunScores", options: "RunOptions") -> None:
     from peopleboy.scenarios.recording.recording_file import is_recorded
     from peopleboy.scenarios.scores.run_scores import headline
-    from peopleboy.scenarios.scores.show_scores import print_drive, print_scores
+    from peopleboy.scenarios.scores.tables.show_scores import print_drive, print_scores
 
     print_scores(scores.people)
     drives = {"following": scores.following, "corridor": scores.corridor, "comfort": scores.comfort}
@@ -180,7 +180,7 @@ def _run_shown(scenario: "Scenario", options: "RunOptions") -> "RunScores":
 def _run_suite(name: str, options: "RunOptions", workers: "Workers", output: Output) -> None:
     from peopleboy.scenarios.running.many_runs import run_suite
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
-    from peopleboy.scenarios.scores.show_scores import print_runs
+    from peopleboy.scenarios.scores.tables.show_scores import print_runs
 
     folders = run_suite(name, options, workers)
     groups = score_by_tracker(folders)
@@ -233,7 +233,7 @@ def sweep(
     from peopleboy.scenarios.running.many_runs import sweep_worlds
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
     from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions
-    from peopleboy.scenarios.scores.show_scores import print_runs
+    from peopleboy.scenarios.scores.tables.show_scores import print_runs
     from peopleboy.tracker.evaluation.table import FIGURES
 
     _check_physics(given)

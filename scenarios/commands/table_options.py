@@ -62,7 +62,6 @@ class TableOptions:
             BadInput: as `score`.
         """
         from peopleboy.scenarios.scores.by_tracker import figures_of_all
-        from peopleboy.scenarios.scores.show_scores import print_notes, print_runs, print_table
         from peopleboy.scenarios.scores.tables.score_table import (
             ALL,
             PAPER_FIGURES,
@@ -70,6 +69,7 @@ class TableOptions:
             make_table,
             score_parts,
         )
+        from peopleboy.scenarios.scores.tables.show_scores import print_notes, print_runs, print_table
         from peopleboy.scenarios.scores.tables.write_table import WRITERS
         from peopleboy.tracker.evaluation.table import FIGURES
 
@@ -113,8 +113,7 @@ def plot_runs(options: "ScoreOptions", score: Score) -> Callable[[Path, "Groups"
 
     def draw(folder: Path, groups: "Groups") -> list[Path]:
         from peopleboy.scenarios.scores.people_ranges import VISIBLE_RANGES
-        from peopleboy.scenarios.scores.tables.identity_kept import occlusions_of
-        from peopleboy.scenarios.scores.tables.score_plots import draw_plots
+        from peopleboy.scenarios.scores.tables.score_plots import draw_plots, occlusions_of
 
         named = {tracker: [Path(run.name) for run in runs] for tracker, runs in groups.items()}
         occlusions = {tracker: occlusions_of(runs, options) for tracker, runs in named.items()}

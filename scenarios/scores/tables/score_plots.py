@@ -10,13 +10,18 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from scipy import stats
 
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.run_folder.finished_run import cameras_of, read_run
 from peopleboy.scenarios.scores.bootstrap import LEVEL, Interval
 from peopleboy.scenarios.scores.by_tracker import Groups
-from peopleboy.scenarios.scores.people_ranges import VISIBLE_RANGES
+from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions, read_reference_boxes, reference_of
+from peopleboy.scenarios.scores.people_ranges import VISIBLE_RANGES, occluded_in
 from peopleboy.scenarios.scores.summaries import summarise
 from peopleboy.scenarios.scores.tables.score_table import keep_targets
-from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, Occlusion, by_length
+from peopleboy.sim.world_config import CONTROL_HZ
+from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, Occlusion, by_length, score_occlusions
 from peopleboy.tracker.evaluation.table import parse_figures
+from peopleboy.tracker.frame import THERMAL
 
 FORMATS: Final = ("svg", "pdf")
 _SIZE_IN: Final = (3.5, 2.6)  # one column of a paper
@@ -25,18 +30,18 @@ _COLOURS: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4
 _MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X")  # which stay distinct in print
 
 
-class Points(NamedTuple):
+class PlotSeries(NamedTuple):
     """One tracker's values by range; the ranges without a value are left out."""
 
     at: Sequence[int]
     values: Sequence[Interval]
 
 
-def identity_kept(occlusions: Sequence[Occlusion]) -> Points:
+def identity_kept(occlusions: Sequence[Occlusion]) -> PlotSeries:
     """Return the share of kept identities [%] by length of the occlusion, with 95 % Wilson intervals."""
     rows = by_length(occlusions)
     at = [number for number, row in enumerate(rows) if row.occlusions]
-    return Points(at, [_share(rows[number].kept, rows[number].occlusions) for number in at])
+    return PlotSeries(at, [_share(rows[number].kept, rows[number].occlusions) for number in at])
 
 
 def _share(kept: int, of: int) -> Interval:
@@ -44,7 +49,7 @@ def _share(kept: int, of: int) -> Interval:
     return Interval(100.0 * kept / of, 100.0 * between.low, 100.0 * between.high)
 
 
-def hota_by_visibility(groups: Sequence[Groups], tracker: str) -> Points:
+def hota_by_visibility(groups: Sequence[Groups], tracker: str) -> PlotSeries:
     """Return the mean HOTA [%] over runs by visible fraction, with 95 % bootstrap intervals.
 
     Args:
@@ -54,13 +59,13 @@ def hota_by_visibility(groups: Sequence[Groups], tracker: str) -> Points:
     hota = parse_figures("HOTA")
     runs = [keep_targets(of_range).get(tracker, ()) for of_range in groups]
     at = [number for number, of_range in enumerate(runs) if of_range]
-    return Points(at, [summarise([run.scores for run in runs[k]], hota)[0].interval for k in at])
+    return PlotSeries(at, [summarise([run.scores for run in runs[k]], hota)[0].interval for k in at])
 
 
-def draw_points(axes: Axes, points: Mapping[str, Points], ranges: Sequence[str]) -> None:
+def draw_series(axes: Axes, series: Mapping[str, PlotSeries], ranges: Sequence[str]) -> None:
     """Draw the values of trackers [%] with their intervals over named ranges."""
-    middle = (len(points) - 1) / 2.0
-    for number, (tracker, (at, values)) in enumerate(points.items()):
+    middle = (len(series) - 1) / 2.0
+    for number, (tracker, (at, values)) in enumerate(series.items()):
         x = [place + _APART * (number - middle) for place in at]
         means = [one.mean for one in values]
         colour, marker = _COLOURS[number % len(_COLOURS)], _MARKERS[number % len(_MARKERS)]
@@ -101,18 +106,42 @@ def draw_plots(
 
 
 def _save(
-    path: Path, points: Mapping[str, Points], ranges: Sequence[str], labels: tuple[str, str]
+    path: Path, series: Mapping[str, PlotSeries], ranges: Sequence[str], labels: tuple[str, str]
 ) -> list[Path]:
     # The salt makes the bytes of an SVG file repeatable, and type 42 keeps the text of a PDF file as text.
     with mpl.rc_context({"svg.hashsalt": path.name, "pdf.fonttype": 42, "font.size": 8}):
         figure = Figure(figsize=_SIZE_IN, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.subplots()
-        draw_points(axes, points, ranges)
+        draw_series(axes, series, ranges)
         axes.set(xlabel=labels[0], ylabel=labels[1])
-        if len(points) > 1:
+        if len(series) > 1:
             axes.legend(frameon=False, fontsize=7)
         paths = [path.with_suffix(f".{form}") for form in FORMATS]
         for one, no_date in zip(paths, ({"Date": None}, {"CreationDate": None}), strict=True):
             figure.savefig(one, metadata=no_date)
     return paths
+
+
+# Full occlusions of finished runs, and the identities that were kept through them.
+
+
+def occlusions_of(folders: Sequence[Path], options: ScoreOptions) -> list[Occlusion]:
+    """Return the identity outcome of every full occlusion in some runs.
+
+    Raises:
+        BadInput: a run is not one of a scenario, or its files are unreadable.
+    """
+    return [occlusion for folder in folders for occlusion in _occlusions_in(folder, options)]
+
+
+def _occlusions_in(folder: Path, options: ScoreOptions) -> list[Occlusion]:
+    about = read_run(folder)
+    if not (folder / "truth.parquet").is_file():
+        raise BadInput(f"--plots: {folder} has no scenario tables, which state the occlusions; leave it out")
+    by = reference_of(folder, about, options)
+    every = 1
+    if by.camera != THERMAL:
+        every = CONTROL_HZ // (cameras_of(folder)[by.camera].rate_hz or CONTROL_HZ)
+    truth, tracks = read_reference_boxes(folder, by)
+    return score_occlusions(truth, tracks, occluded_in(folder, by.camera, truth, every))
