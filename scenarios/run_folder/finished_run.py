@@ -56,6 +56,12 @@ class About(BaseModel):
     planned_frames: Annotated[int, Field(ge=1)] | None = None
     behaviour: str | None = None
     adopted: ImportedTracks | None = None
+    episode: dict[str, Any] | None = None
+
+    @property
+    def ended(self) -> str:
+        """How the episode ended that the run repeats; empty if it goes on, or for other runs."""
+        return str((self.episode or {}).get("ended") or "")
 
 
 @dataclass(frozen=True, eq=False)

@@ -110,12 +110,13 @@ _NEAR: Final = (
 
 
 def headline(scores: RunScores) -> str:
-    """Summarise detection of people, and the task of the robot."""
-    parts = [_people(scores.people)]
+    """Summarise the task of the robot, then the detection of people."""
+    parts = []
     if scores.following is not None:
         parts.append(_following(scores.following))
     if scores.corridor is not None:
         parts.append(_corridor(scores.corridor))
+    parts.append(_people(scores.people))
     return " ".join(parts)
 
 

@@ -93,6 +93,28 @@ class RunFindings(RunHistory):
         return len(self.transfers) + len(self.lost)
 
     @property
+    def target(self) -> str:
+        """Name of the person to follow: the scenario's first; empty if no person was ever present."""
+        return self.people[0].name if self.people else ""
+
+    @property
+    def task_end(self) -> str:
+        """How following ended: "never found", "lost for good" or "followed"; empty without that task."""
+        following = self.run.metrics.get("following")
+        if not following or not self.people:
+            return ""
+        if not following.get("found"):
+            return "never found"
+        is_kept = following.get("followed_to_end") and self.run.about.ended != "lost"
+        return "followed" if is_kept else "lost for good"
+
+    @property
+    def lost_at_s(self) -> float:
+        """Time of the last frame in which the person to follow had a track."""
+        tracked = np.flatnonzero(self.people[0].matched) if self.people else np.zeros(0, np.int64)
+        return self.run.time_s(int(tracked[-1]) + 1) if len(tracked) else 0.0
+
+    @property
     def contacts(self) -> list[LogLine]:
         """Events in which the robot touches a person or an object."""
         return [line for line in self.run.events if line.kind == "contact starts"]
@@ -113,12 +135,30 @@ _APART_S = 1.0  # moments of one person closer than this are merged
 def headline(runs: Sequence[RunFindings]) -> str:
     """Summarise people tracked to the end and identity errors, in one run or in several."""
     is_of_many = len(runs) > 1
-    text = "; ".join(finding.sentence(is_of_many_runs=is_of_many) for finding in _findings(runs))
-    return f"{counted(len(runs), 'run')}: {text}." if is_of_many else f"{text}."
+    findings = [*_task_findings(runs), *_findings(runs)]
+    text = "; ".join(finding.sentence(is_of_many_runs=is_of_many) for finding in findings)
+    return f"{counted(len(runs), 'run')}: {text}." if is_of_many else f"{text[:1].upper()}{text[1:]}."
+
+
+def _task_findings(runs: Sequence[RunFindings]) -> Iterator[Finding]:
+    """Yield how the robot fared with its task: the person that it followed, the corridor, and contacts."""
+    for kind in ("never found", "lost for good", "followed"):
+        found = [run for run in runs if run.task_end == kind]
+        if found:
+            values = {"person": spoken(found[0].target), "time": seconds(found[0].lost_at_s)}
+            yield Finding(kind, len(found), values | {"runs": counted(len(found), "run")})
+    ways_m = [way_m for run in runs if (way_m := run.run.metrics.get("corridor", {}).get("way_m"))]
+    if ways_m:
+        yield Finding("drove", len(ways_m), {"distance": f"{sum(ways_m):.1f}\u00a0m"})
+    contacts = [line for run in runs for line in run.contacts]
+    if contacts:
+        names = listed(list(dict.fromkeys(spoken(line.other) for line in contacts)))
+        values = {"names": names, "time": seconds(contacts[0].time_s)}
+        yield Finding("collided", len(contacts), values | {"contacts": counted(len(contacts), "contact")})
 
 
 def _findings(runs: Sequence[RunFindings]) -> Iterator[Finding]:
-    """Yield the findings, the gravest first."""
+    """Yield the findings of tracking, the gravest first."""
     transfers = [one for run in runs for one in run.transfers]
     if transfers:
         one = transfers[0]
@@ -142,11 +182,6 @@ def _findings(runs: Sequence[RunFindings]) -> Iterator[Finding]:
     count = sum(len(run.false_tracks) for run in runs)
     if count or len(runs) > 1:
         yield Finding("false tracks", max(count, 1), {"tracks": counted(count, "false track")})
-    contacts = [line for run in runs for line in run.contacts]
-    if contacts:
-        names = listed(list(dict.fromkeys(spoken(line.other) for line in contacts)))
-        values = {"names": names, "time": seconds(contacts[0].time_s)}
-        yield Finding("contacts", len(contacts), values | {"contacts": counted(len(contacts), "contact")})
 
 
 def _runs_with(runs: Sequence[RunFindings], what: str) -> str:

@@ -31,6 +31,31 @@ AFTERWARDS: Final = {
 
 # Parts of a headline: for one finding in one run, for several in one run, and for several runs.
 HEADLINES: Final = {
+    "never found": (
+        "The robot never found {person}",
+        "The robot never found {person}",
+        "the robot never found its person in {runs}",
+    ),
+    "lost for good": (
+        "The robot lost {person} for good at {time}",
+        "The robot lost {person} for good at {time}",
+        "the robot lost its person for good in {runs}",
+    ),
+    "followed": (
+        "The robot reached {person} and followed to the end",
+        "The robot reached {person} and followed to the end",
+        "the robot reached its person and followed to the end in {runs}",
+    ),
+    "drove": (
+        "The robot drove {distance} of corridor",
+        "The robot drove {distance} of corridor",
+        "the robots drove {distance} of corridor",
+    ),
+    "collided": (
+        "the robot touched {names}, first at {time}",
+        "the robot touched {names}, first at {time}",
+        "{contacts} of the robot",
+    ),
     "transfer": (
         "Number {number} passed from {person} to {other} at {time}, when {person} {cause}",
         "A number passed to another person {times}, first number {number} from {person} to {other} at {time}",
@@ -54,11 +79,6 @@ HEADLINES: Final = {
         "{times} a person was re-identified, after at most {longest} under another number",
     ),
     "false tracks": ("{tracks}",) * 3,
-    "contacts": (
-        "the robot touched {names}, first at {time}",
-        "the robot touched {names}, first at {time}",
-        "{contacts} of the robot",
-    ),
 }
 
 # Title and text of a failure.

@@ -13,6 +13,7 @@ import yaml
 
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.report.findings.run_findings import analyse_run, headline
 from peopleboy.scenarios.run_folder.finished_run import cameras_of, open_run
 from peopleboy.scenarios.running.run import run as run_scenario
 from peopleboy.scenarios.running.run_options import RunOptions
@@ -157,6 +158,8 @@ def test_a_saved_run_ends_as_its_episode_although_more_people_would_come(tmp_pat
     assert about["frames"] == step + 2
     following = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))["following"]
     assert following["longest_lost_s"] == env.metrics()["following"]["longest_lost_s"]
+    words = headline([analyse_run(open_run(folder))])
+    assert words.startswith("The robot lost Maria for good at "), words
 
 
 def test_an_earlier_run_is_replaced_only_when_asked(tmp_path: Path) -> None:
