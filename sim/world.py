@@ -317,7 +317,8 @@ class SimulatedWorld:
         if self.config.renderer == BLIND:
             return
         self._scene_now: Scene | None = None
-        self._seen: dict[tuple[Renderer, CameraGeometry, bool], RenderPass] = {}
+        self._seen: dict[tuple[Renderer, CameraGeometry], RenderPass] = {}
+        self._seen_through: dict[tuple[Renderer, CameraGeometry], RenderPass] = {}
         self.rig.forget()
 
     @property
@@ -355,12 +356,12 @@ class SimulatedWorld:
     def _look(self, config: CameraConfig, *, sees_through: bool) -> RenderPass:
         """Render a camera's view, with or without the surfaces through which light passes."""
         renderer, camera = kind_of(config).renderer, config.camera
-        key = renderer, camera, sees_through
-        if key not in self._seen:
+        known = self._seen_through if sees_through else self._seen
+        if (renderer, camera) not in known:
             pose = self.robot.world_from_robot() @ camera.robot_from_camera
             scene = self._scene.without(self.is_clear) if sees_through else self._scene
-            self._seen[key] = look(renderer, scene, camera, pose)
-        return self._seen[key]
+            known[renderer, camera] = look(renderer, scene, camera, pose)
+        return known[renderer, camera]
 
     def _glass_cosine(self, config: CameraConfig) -> Matrix | None:
         """Return the cosine of the angle at which a depth camera looks through glass, (H, W), or NaN."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import numpy as np
@@ -63,6 +64,9 @@ def find_model(path: Path | str) -> Path:
 
 # Where PyBullet searches for files named in a URDF, relative to the URDF's folder.
 MESH_PLACES = (".", "..", "../..")
+_PACKAGE = re.compile(r"(?:package|model)://")
+_FILE = re.compile(r"file://(?:localhost(?=/))?")
+_PACKAGES_UP = 8  # folders above a URDF in which its packages are searched for
 _GREY = (0.5, 0.5, 0.5)
 _DEEPEST = 200  # links in a chain: the pose of a link is that of its parent and more
 # Keywords for materials in OBJ files, and for textures in material files; the name is the line's last word.
@@ -154,9 +158,32 @@ def parse_urdf(path: Path) -> ElementTree.Element:
     """
     try:
         # A declaration may claim an encoding that is not the file's.
-        return ElementTree.fromstring(re.sub(r"<\?xml.*?\?>", "", read_text(path), count=1))
+        root = ElementTree.fromstring(re.sub(r"<\?xml.*?\?>", "", _text_of(path), count=1))
+        if _is_xacro(root):
+            raise BadInput(
+                f"{path} cannot be read as a URDF: it is a xacro that is not expanded; "
+                f"give the output of `xacro {path.name}`"
+            )
+        return root
     except (OSError, UnicodeDecodeError, ElementTree.ParseError) as error:
         raise BadInput(f"{path} cannot be read as a URDF: {error}") from error
+
+
+def _text_of(path: Path) -> str:
+    """Read a file in UTF-8, or in Latin-1 as old tools write it."""
+    try:
+        return read_text(path)
+    except UnicodeDecodeError:
+        return read_text(path, "latin-1")
+
+
+def _is_xacro(root: ElementTree.Element) -> bool:
+    """Return whether a file has macros, or numbers in braces, that have not been expanded."""
+    return any(
+        "xacro" in part.tag.partition("}")[0] or any("${" in value for value in part.attrib.values())
+        for part in root.iter()
+        if isinstance(part.tag, str)
+    )
 
 
 def _read_joints(root: ElementTree.Element, path: Path) -> Joints:
@@ -254,9 +281,14 @@ def _find_mesh(urdf: Path, name: str) -> Path:
 
 
 def _places_of(urdf: Path, name: str) -> list[Path]:
-    """Return where a file that a URDF names may be, like PyBullet."""
-    plain = name.removeprefix("package://").removeprefix("file://")
-    return [urdf.parent / place / plain for place in MESH_PLACES]
+    """Return where a file that a URDF names may be: like PyBullet, and in a package around the URDF."""
+    if _FILE.match(name):
+        name = unquote(_FILE.sub("", name, count=1))
+    plain = _PACKAGE.sub("", name.replace("\\", "/"), count=1)
+    places = [urdf.parent / place / plain for place in MESH_PLACES]
+    if _PACKAGE.match(name):
+        places += [folder / plain for folder in list(urdf.parents)[:_PACKAGES_UP]]
+    return places
 
 
 def _origin(element: ElementTree.Element) -> tuple[Numbers, Rotation]:
