@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from peopleboy.geometry.camera_calibration import Calibration
     from peopleboy.tracker.frame import Frame
     from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
-    from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
-    from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
     from peopleboy.tracker.sensors.own_detector import ImageDetector
     from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
     from peopleboy.tracker.track import Box, Track
@@ -89,13 +87,6 @@ def _contour_tracker(name: str, rng: "np.random.Generator") -> "ContourTracker":
     from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 
     return ContourTracker(VARIANTS[name], rng)
-
-
-def _rgbd_tracker(config: "RgbdConfig", rng: "np.random.Generator") -> "RgbdTracker":
-    from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
-    from peopleboy.tracker.rgbd.window_model import shipped_windows
-
-    return RgbdTracker(config, shipped_windows(sees_depth=config.sees_depth), rng)
 
 
 def _thermal_sensor(
@@ -226,24 +217,29 @@ def _handover(rng: "np.random.Generator", detector: "ImageDetector | None" = Non
     "rgbd",
     scope="the situation-awareness thesis, chapter 4, with extensions",
     summary="Tracks people on the floor with an RGB-D camera, on a stationary or moving robot. Verifies "
-    "candidates of human size with a learned classifier, and tracks each person with a particle "
-    "filter.",
+    "candidates of human size with a learned classifier, and tracks each person with a Kalman filter.",
 )
-def _rgbd(rng: "np.random.Generator") -> Tracker:
-    from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
+def _rgbd(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
+    from peopleboy.tracker.frame import THERMAL
+    from peopleboy.tracker.sensors.depth.depth_sensor import DepthSensor
+    from peopleboy.tracker.tracking.config import RGBD
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
-    return _rgbd_tracker(RgbdConfig(), rng)
+    return PeopleTracker((DepthSensor(tracker=RGBD),), RGBD, shown_in=(THERMAL,))
 
 
 @TRACKERS.register(
     "rgbd-printed",
     scope="the situation-awareness thesis, chapter 4",
-    summary="Like `rgbd`, but uses the settings of the thesis wherever it states them.",
+    summary="Detects people like `rgbd`, and tracks each person with a particle filter. Uses the settings of "
+    "the thesis wherever it states them.",
 )
 def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
-    from peopleboy.tracker.rgbd.rgbd_config import PRINTED
+    from peopleboy.tracker.reproductions.rgbd.rgbd_config import PRINTED
+    from peopleboy.tracker.reproductions.rgbd.rgbd_tracker import RgbdTracker
+    from peopleboy.tracker.sensors.depth.window_model import shipped_windows
 
-    return _rgbd_tracker(PRINTED, rng)
+    return RgbdTracker(PRINTED, shipped_windows(sees_depth=PRINTED.sees_depth), rng)
 
 
 @TRACKERS.register(
@@ -254,7 +250,7 @@ def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
     "people by colours, motion and stature.",
 )
 def _fused(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
-    from peopleboy.tracker.sensors.depth import DepthSensor
+    from peopleboy.tracker.sensors.depth.depth_sensor import DepthSensor
     from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaSensor
     from peopleboy.tracker.tracking.config import FUSED
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker

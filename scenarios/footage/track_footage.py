@@ -18,7 +18,7 @@ from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.latency import write_latency
 from peopleboy.tracker.footage.box_kinds import BoxKind, boxed_whole, torso_of
 from peopleboy.tracker.footage.footage_truth import GivenTruth, doubts, find_truth, load_truth
-from peopleboy.tracker.frame import DEPTH
+from peopleboy.tracker.frame import DEPTH, THERMAL
 from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from peopleboy.tracker.trackers import Introducible, Tracker, explanation_of, is_own, make_tracker
 from peopleboy.wording import counted
@@ -144,7 +144,7 @@ def _tracker_of(
     if start == "truth" and truth is not None:
         start = truth.box_at(1)
     if start is not None and not isinstance(start, str):
-        if not isinstance(tracker, Introducible):
+        if THERMAL not in tracker.cameras or not isinstance(tracker, Introducible):
             raise BadInput(
                 f"--tracker {options.tracker}: cannot be initialised with a box; leave --start out"
             )

@@ -39,8 +39,8 @@ from peopleboy.tracker.reproductions.contour.measurement.section_evidence import
 )
 from peopleboy.tracker.reproductions.panoramic.depth_cues import MeasuredFigure
 from peopleboy.tracker.reproductions.panoramic.paper_tracker import PanoramicExplanation
-from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
-from peopleboy.tracker.sensors.depth import DepthExplanation
+from peopleboy.tracker.reproductions.rgbd.rgbd_tracker import RgbdExplanation
+from peopleboy.tracker.sensors.depth.depth_sensor import DepthExplanation
 from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaExplanation
 from peopleboy.tracker.sensors.thermal.thermal_sensor import DetectionExplanation
 from peopleboy.tracker.track import Box, FloorPlace, Track

@@ -21,7 +21,7 @@ from peopleboy.scenarios.sim_to_real.clips import (
     random_patches,
 )
 from peopleboy.scenarios.sim_to_real.measures import ImageStatistics, gradient, measure_images
-from peopleboy.tracker.rgbd.human_windows import hog_descriptor
+from peopleboy.tracker.sensors.depth.human_windows import hog_descriptor
 
 # A classifier two-sample test: how well a small classifier separates rendered patches from real ones.
 

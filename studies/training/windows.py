@@ -21,10 +21,9 @@ from peopleboy.studies.training.random_scenes import FIRST_SEED, random_scene
 from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, load_samples, sample_folder
 from peopleboy.studies.training.specification import Specification, missing_package
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
-from peopleboy.tracker.rgbd.depth_view import DepthView
-from peopleboy.tracker.rgbd.human_windows import (
+from peopleboy.tracker.sensors.depth.depth_view import DepthView, Image
+from peopleboy.tracker.sensors.depth.human_windows import (
     Features,
-    Image,
     WindowRange,
     cut,
     cut_depth,
@@ -32,9 +31,9 @@ from peopleboy.tracker.rgbd.human_windows import (
     range_of,
     window_of,
 )
-from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection, PreDetector
-from peopleboy.tracker.rgbd.u_depth import UDepthConfig
-from peopleboy.tracker.rgbd.window_model import WindowModel, feature_length, file_name
+from peopleboy.tracker.sensors.depth.pre_detection import HumanSize, Layout, PreDetection, PreDetector
+from peopleboy.tracker.sensors.depth.u_depth import UDepthConfig
+from peopleboy.tracker.sensors.depth.window_model import WindowModel, feature_length, file_name
 from peopleboy.tracker.track import Box
 
 COST: Final = {WindowRange.FAR: 0.01, WindowRange.NEAR: 0.01}
@@ -113,7 +112,7 @@ def collect_windows(scenario: str, seed: int, has_jitter: bool) -> WindowSamples
             if is_person is None:
                 continue
             kind = range_of(found.z_m, layout.floor, view, image.shape[0])
-            windows = [window_of(found, kind, layout.floor, view)]
+            windows = [window_of(found.box, found.z_m, kind, layout.floor, view)]
             if has_jitter and is_person:
                 windows += [_jittered(windows[0], rng) for _ in range(_JITTERS)]
             for window in windows:

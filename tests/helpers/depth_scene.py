@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.geometry.camera_calibration import PinholeCalibration
-from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
+from peopleboy.tracker.sensors.depth.depth_view import Depth, DepthView
 from tests.helpers.images.as_taken import as_taken
 
 FOCAL_PX = 300.0

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.geometry.camera_calibration import Calibration
+from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import Frame, Odometry, check_frame, lacking
 from peopleboy.tracker.track import Box, FloorPlace, Track
@@ -42,9 +42,10 @@ from peopleboy.tracker.tracking.sensor import (
     SensorDetections,
     SensorExplanations,
     Settings,
+    project_boxes,
 )
 from peopleboy.tracker.tracking.track_state import DetectionEvidence, TrackState
-from peopleboy.tracker.tracking.viewpoint import Position
+from peopleboy.tracker.tracking.viewpoint import Position, Viewpoint
 
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
@@ -60,6 +61,7 @@ class PeopleTracker:
         sensors: detect people; the first one's camera is the origin of the level frame.
         config: settings of the filter and of the tracks.
         optional: further sensors, each used if the robot carries its camera.
+        shown_in: further planar cameras in whose images tracks have boxes, if these are calibrated.
     """
 
     def __init__(
@@ -67,8 +69,10 @@ class PeopleTracker:
         sensors: Sequence[Sensor],
         config: PeopleTrackerConfig | None = None,
         optional: Sequence[Sensor] = (),
+        shown_in: Sequence[str] = (),
     ) -> None:
         self._sensors, self._optional = tuple(sensors), tuple(optional)
+        self._shown_in = tuple(shown_in)
         self._config = PeopleTrackerConfig() if config is None else config
         self._introduced: Box | None = None
         self._targets: list[TrackState] = []
@@ -450,7 +454,7 @@ class PeopleTracker:
         if self._settings is None:
             return ()
         predicted = self._predictions(frame)
-        images = {sensor.cameras[0]: sensor.project(frame, predicted) for sensor in self._sensors}
+        images = self._projected(frame, predicted)
         places: Sequence[FloorPlace | None] = [None] * len(predicted)
         if predicted.origin_m is not None:
             common_m = np.array([target.common_m for target in self._targets]).reshape(-1, 2)
@@ -462,6 +466,16 @@ class PeopleTracker:
             and any(image is not None and image.is_inside[row] for image in images.values())
         ]
         return tuple(sorted(tracks, key=lambda track: track.id))
+
+    def _projected(self, frame: Frame, predicted: Predictions) -> dict[str, ProjectedBoxes | None]:
+        """Return the tracks in the images of the sensors and in those of the further cameras."""
+        images = {sensor.cameras[0]: sensor.project(frame, predicted) for sensor in self._sensors}
+        for camera in self._shown_in:
+            calibration = frame.calibrations.get(camera)
+            if isinstance(calibration, PinholeCalibration) and predicted.origin_m is not None:
+                view = Viewpoint.of(calibration, (0, 0), predicted.origin_m, self._config.motion.toe_m)
+                images[camera] = project_boxes(predicted, view, view.shape)
+        return images
 
     def _boxes_of(
         self, row: int, images: Mapping[str, ProjectedBoxes | None], time_s: float

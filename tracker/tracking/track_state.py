@@ -177,8 +177,14 @@ class TrackState:
         return (
             self.is_confirmed
             and self.log_odds > config.deletion_log_odds
-            and time_s - max(self.seen_s, self.present_s if self.is_hidden else -math.inf) <= doubt
+            and time_s - max(self.seen_s, self._visible_s()) <= doubt
         )
+
+    def _visible_s(self) -> float:
+        """Return when some of a hidden person was last visible, not too long after a detection."""
+        if not self.is_hidden:
+            return -math.inf
+        return min(self.present_s, self.seen_s + self.existence.max_present_s)
 
     def is_deleted(self, time_s: float) -> bool:
         """Return whether the track is deleted: it could not be reidentified."""

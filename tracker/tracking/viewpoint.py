@@ -51,6 +51,12 @@ class Viewpoint:
         """Half-width of the field of view: the tangent of half the horizontal angle."""
         return (self.centre_px[0] + 0.5) / self.focal_px[0]
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of the image [px], whose middle is the principal point."""
+        across, down = self.centre_px
+        return round(2.0 * down + 1.0), round(2.0 * across + 1.0)
+
     @classmethod
     def of(
         cls,

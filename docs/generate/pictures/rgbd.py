@@ -14,12 +14,13 @@ from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.cameras.depth import show_depth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
-from peopleboy.tracker.rgbd.depth_view import DepthView
-from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
-from peopleboy.tracker.rgbd.u_depth import FARTHEST_M, depths_m
-from peopleboy.tracker.rgbd.v_disparity import BIN_PX, HeightLine, v_disparity
+from peopleboy.tracker.sensors.depth.depth_sensor import DepthExplanation
+from peopleboy.tracker.sensors.depth.depth_view import DepthView
+from peopleboy.tracker.sensors.depth.pre_detection import PreDetection
+from peopleboy.tracker.sensors.depth.u_depth import FARTHEST_M, depths_m
+from peopleboy.tracker.sensors.depth.v_disparity import BIN_PX, HeightLine, v_disparity
 from peopleboy.tracker.track import Track
-from peopleboy.tracker.trackers import make_tracker
+from peopleboy.tracker.trackers import explanation_of, make_tracker
 
 SCENARIO, SEED, AT_S = "crowd_8_moving", 0, 5.0
 NEAREST_M = 1.5
@@ -37,26 +38,31 @@ def steps() -> Figure:
         _draw(colour, track.boxes[DEPTH], tuple(c / 255 for c in track_colour(track.id)), str(track.id))
     show(depth, show_depth(frame.depth(DEPTH)))
     depth.set_title("human size; solid: verified", fontsize=9)
-    for one in told.detections:
-        _draw(depth, one.found.box, FOUND, "", dashed=not one.is_verified)
+    for one, score in _detected(told):
+        _draw(depth, one.box, FOUND, "", dashed=score <= 0.0)
     _draw_rows(rows, frame, view, told)
     _draw_above(above, view, told)
     return figure
 
 
-def _watch() -> tuple[Frame, DepthView, tuple[Track, ...], RgbdExplanation]:
+def _watch() -> tuple[Frame, DepthView, tuple[Track, ...], DepthExplanation]:
     scenario = load_scenario(SCENARIO).mounting((DEPTH,))
     calibrations = calibrations_of(scenario.world(SEED).robot.cameras)
     tracker = make_tracker("rgbd", SEED)
-    assert isinstance(tracker, RgbdTracker)
     for _, observation in blind_drive(scenario, SEED):
         images = {name: observation.images[name] for name in (DEPTH, DEPTH_COLOUR)}
         frame = Frame(images=images, time_s=observation.time_s, calibrations=calibrations)
         tracks = tracker.update(frame)
         if observation.time_s >= AT_S:
             break
-    assert tracker.explanation is not None
-    return frame, DepthView.of(calibrations[DEPTH], DEPTH), tracks, tracker.explanation
+    told = explanation_of(tracker)
+    assert isinstance(told, DepthExplanation)
+    return frame, DepthView.of(calibrations[DEPTH], DEPTH), tracks, told
+
+
+def _detected(told: DepthExplanation) -> list[tuple[PreDetection, float]]:
+    """Return the objects of human size, with their log-odds of being people."""
+    return list(zip(told.layout.detections, told.scores.tolist(), strict=False))
 
 
 def _draw(axes: Axes, box: tuple[float, ...], colour: object, text: str, *, dashed: bool = False) -> None:
@@ -66,7 +72,7 @@ def _draw(axes: Axes, box: tuple[float, ...], colour: object, text: str, *, dash
     axes.text(left, top - 6, text, color=colour, fontsize=8, clip_on=True)
 
 
-def _draw_rows(axes: Axes, frame: Frame, view: DepthView, told: RgbdExplanation) -> None:
+def _draw_rows(axes: Axes, frame: Frame, view: DepthView, told: DepthExplanation) -> None:
     """Draw rows over disparity: the floor is a falling line, the ceiling rises, people are vertical."""
     counts = v_disparity(frame.depth(DEPTH), view)
     last = int(view.disparity_px_m / NEAREST_M / BIN_PX)
@@ -81,7 +87,7 @@ def _draw_rows(axes: Axes, frame: Frame, view: DepthView, told: RgbdExplanation)
     axes.set_title("v-disparity: floor and ceiling", fontsize=9)
 
 
-def _draw_above(axes: Axes, view: DepthView, told: RgbdExplanation) -> None:
+def _draw_above(axes: Axes, view: DepthView, told: DepthExplanation) -> None:
     """Draw columns over depth, between floor, ceiling and walls, which are lines in disparity."""
     counts = told.layout.counts
     depth_m = depths_m(FARTHEST_M / (len(counts) - 1))
@@ -90,10 +96,10 @@ def _draw_above(axes: Axes, view: DepthView, told: RgbdExplanation) -> None:
     for wall in told.layout.walls:
         columns = np.arange(wall.left, wall.right + 1.0)
         axes.plot(columns, wall.depth_m(columns, view), color=LINE, lw=1.2)
-    for one in told.detections:
-        left, _, width, _ = one.found.box
-        low = one.found.z_m - one.found.depth_m / 2.0
-        _draw_flat(axes, (left, low, width, one.found.depth_m), dashed=not one.is_verified)
+    for one, score in _detected(told):
+        left, _, width, _ = one.box
+        low = one.z_m - one.depth_m / 2.0
+        _draw_flat(axes, (left, low, width, one.depth_m), dashed=score <= 0.0)
     axes.set(xlim=extent[:2], ylim=(NEAREST_M, 10.0), xlabel="column", ylabel="depth (m)")
     axes.set_title("plan view: walls and clusters of human size", fontsize=9)
 

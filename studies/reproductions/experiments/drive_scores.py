@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from peopleboy.sim.truth.truth import PersonTruth, Truth
-from peopleboy.tracker.rgbd.depth_view import DepthView
+from peopleboy.tracker.sensors.depth.depth_view import DepthView
 from peopleboy.tracker.track import Track
 
 Floats = NDArray[np.float64]

@@ -21,13 +21,17 @@ from peopleboy.studies.reproductions.experiments.drive_scores import (
 from peopleboy.studies.reproductions.experiments.leg_tracker import CAMERAS, LegTracker, scan
 from peopleboy.studies.reproductions.experiments.playback import Moment, Stopwatch, play
 from peopleboy.studies.reproductions.plan import shortened
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Floats
-from peopleboy.tracker.rgbd.depth_view import DepthView
-from peopleboy.tracker.rgbd.pre_detection import PRINTED_SIZE
-from peopleboy.tracker.rgbd.rgbd_config import PRINTED, RgbdConfig
-from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
-from peopleboy.tracker.rgbd.window_model import people_detector, shipped_windows
-from peopleboy.tracker.track import Status
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Floats, Frame
+from peopleboy.tracker.reproductions.rgbd.rgbd_config import PRINTED, RgbdConfig
+from peopleboy.tracker.reproductions.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
+from peopleboy.tracker.sensors.depth.depth_sensor import DepthExplanation, DepthSensor, DepthSensorConfig
+from peopleboy.tracker.sensors.depth.depth_view import DepthView
+from peopleboy.tracker.sensors.depth.pre_detection import PRINTED_SIZE
+from peopleboy.tracker.sensors.depth.window_model import people_detector, shipped_windows
+from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.trackers import Tracker, explanation_of
+from peopleboy.tracker.tracking.config import RGBD
+from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
 SETS: Final = (
     "leader_far_ahead",
@@ -53,37 +57,45 @@ TURNS: Final = "fast_turn"
 """The scenario with the most rotation of the robot, to measure the benefit of odometry."""
 
 DEFAULT, LITERAL = "default", "as printed"
+FILTERS: Final = "particle filters"
 NO_CONNECTOR, NO_ODOMETRY = "no connector", "no odometry"
 NO_WALLS: Final = "walls left in"
 NO_DEPTH: Final = "no depth in the filters"
+COLOUR_WINDOWS: Final = "windows of colour alone"
 OPENCV: Final = "OpenCV's far detector"
 
-OURS: Final = RgbdConfig()
-COLOUR_ONLY: Final = replace(
-    OURS,
-    sees_depth=False,
-    least_far_score=0.5,
-    least_near_score=0.2,
-    hypotheses=replace(OURS.hypotheses, births=2),
-)
-"""Classifies windows by colour alone, which requires a second detection before a track starts."""
-
-CHOICES: Final[Mapping[str, RgbdConfig]] = {
-    DEFAULT: OURS,
-    LITERAL: PRINTED,
-    "printed size": replace(OURS, size=PRINTED_SIZE),
-    NO_CONNECTOR: replace(OURS, above=replace(OURS.above, has_connector=False)),
-    NO_WALLS: replace(OURS, above=replace(OURS.above, has_walls=False)),
-    "windows of colour alone": COLOUR_ONLY,
-    "no verification": replace(OURS, has_verification=False),
-    OPENCV: COLOUR_ONLY,
-    "no sharpening": replace(OURS, filter=replace(OURS.filter, sharpness=0.0)),
-    "no hold": replace(OURS, filter=replace(OURS.filter, has_hold=False)),
-    "no see-through": replace(OURS, hypotheses=replace(OURS.hypotheses, has_see_through=False)),
-    NO_DEPTH: replace(OURS, filter=replace(OURS.filter, kernel_m=1000.0)),
-    NO_ODOMETRY: replace(OURS, hypotheses=replace(OURS.hypotheses, uses_odometry=False)),
+_SENSOR: Final = DepthSensorConfig()
+SENSORS: Final[Mapping[str, DepthSensorConfig]] = {
+    DEFAULT: _SENSOR,
+    "printed size": replace(_SENSOR, size=PRINTED_SIZE),
+    NO_CONNECTOR: replace(_SENSOR, above=replace(_SENSOR.above, has_connector=False)),
+    NO_WALLS: replace(_SENSOR, above=replace(_SENSOR.above, has_walls=False)),
+    COLOUR_WINDOWS: _SENSOR,
+    OPENCV: _SENSOR,
+    NO_ODOMETRY: _SENSOR,
 }
-"""The RGB-D tracker, and variants with one setting changed, by the name used in tables."""
+"""The depth sensor of the tracker `rgbd`, and variants, by the name used in tables.
+
+One variant's tracker has no odometry; two variants have other classifiers of windows.
+"""
+
+PARTICLES: Final = RgbdConfig()
+COLOUR_ONLY: Final = replace(PARTICLES, sees_depth=False, least_far_score=0.5, least_near_score=0.2)
+"""The least scores of windows that are classified by colour alone."""
+
+FILTERS_CHOICES: Final[Mapping[str, RgbdConfig]] = {
+    LITERAL: PRINTED,
+    FILTERS: PARTICLES,
+    "no verification": replace(PARTICLES, has_verification=False),
+    "no sharpening": replace(PARTICLES, filter=replace(PARTICLES.filter, sharpness=0.0)),
+    "no hold": replace(PARTICLES, filter=replace(PARTICLES.filter, has_hold=False)),
+    "no see-through": replace(PARTICLES, hypotheses=replace(PARTICLES.hypotheses, has_see_through=False)),
+    NO_DEPTH: replace(PARTICLES, filter=replace(PARTICLES.filter, kernel_m=1000.0)),
+}
+"""The thesis's tracker with particle filters, as printed, improved, and variants of the improved one."""
+
+CHOICES: Final = (*SENSORS, *FILTERS_CHOICES)
+"""All trackers, by the name used in tables."""
 
 BANDS: Final = (0.1, 0.4, 0.7, 1.0)
 """Upper limits of the hidden share for recall of the pre-detection."""
@@ -97,11 +109,39 @@ def set_name(number: int) -> str:
     return f"set {number}"
 
 
-def make_choice(name: str, rng: np.random.Generator) -> RgbdTracker:
+class _WithoutOdometry:
+    """A tracker to which the robot seems to stand still."""
+
+    def __init__(self, tracker: Tracker) -> None:
+        self._tracker = tracker
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        return self._tracker.cameras
+
+    @property
+    def explanation(self) -> object:
+        return explanation_of(self._tracker)
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        return self._tracker.update(replace(frame, odometry=None))
+
+
+def make_choice(name: str, rng: np.random.Generator) -> Tracker:
     """Create a tracker, one of `CHOICES`."""
-    config = CHOICES[name]
-    model = people_detector() if name == OPENCV else shipped_windows(sees_depth=config.sees_depth)
-    return RgbdTracker(config, model, rng)
+    if name in FILTERS_CHOICES:
+        config = FILTERS_CHOICES[name]
+        return RgbdTracker(config, shipped_windows(sees_depth=config.sees_depth), rng)
+    model = people_detector() if name == OPENCV else shipped_windows(sees_depth=name != COLOUR_WINDOWS)
+    tracker = PeopleTracker((DepthSensor(SENSORS[name], RGBD, model),), RGBD)
+    return _WithoutOdometry(tracker) if name == NO_ODOMETRY else tracker
+
+
+def body_m(name: str) -> float:
+    """Return the distance from the visible surface to a tracker's position of a person [m]."""
+    if name in FILTERS_CHOICES:
+        return FILTERS_CHOICES[name].hypotheses.body_m
+    return SENSORS[name].body_m
 
 
 def play_drive(scenario: Scenario, seed: int) -> Iterator[tuple[Moment, tuple[FloorPerson, ...]]]:
@@ -126,9 +166,9 @@ class DriveTracking:
     """
 
     def __init__(self, name: str) -> None:
-        self.tracker: RgbdTracker = make_choice(name, stream(0, "reproduce.tracker"))
+        self.tracker = make_choice(name, stream(0, "reproduce.tracker"))
         self.rows: list[tuple[float, ...]] = []
-        self._score = DriveScore(CHOICES[name].hypotheses.body_m)
+        self._score = DriveScore(body_m(name))
         self._timed = Stopwatch()
         self._found = np.zeros((len(BANDS), 2), np.int64)
         self._false = 0
@@ -154,15 +194,21 @@ class DriveTracking:
 
         People cut off by half at the border are omitted, as their visible part has not the size of a person.
         """
-        explanation = self.tracker.explanation
-        assert explanation is not None  # at least one frame was processed
-        places = np.array([one.place_m for one in explanation.detections]).reshape(-1, 2)
+        places = _pre_detected(explanation_of(self.tracker))
         found = associate(people, places, _NEAR_M)
         for number, person in enumerate(people):
             if person.is_counted and person.truth.inside_fraction > _HALF:
                 band = int(np.searchsorted(BANDS, person.truth.occluded_fraction))
                 self._found[band] += (1, number in found)
         self._false += sum(_is_false(place, people) for place in places)
+
+
+def _pre_detected(explanation: object) -> Floats:
+    """Return the positions (N, 2) of objects of human size."""
+    if isinstance(explanation, DepthExplanation):
+        return explanation.places_m[: len(explanation.layout.detections)]
+    assert isinstance(explanation, RgbdExplanation)
+    return np.array([one.place_m for one in explanation.detections]).reshape(-1, 2)
 
 
 def watch_drive(scenario: str, seed: int, names: Sequence[str], scale: float, most_s: float) -> Result:

@@ -20,7 +20,7 @@ from peopleboy.studies.reproductions.experiments.drive_scores import FloorPerson
 from peopleboy.studies.reproductions.experiments.drive_tracking import (
     COLOUR_ONLY,
     DEFAULT,
-    OURS,
+    PARTICLES,
     SETS,
     make_choice,
     play_drive,
@@ -31,13 +31,13 @@ from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.studies.training.windows import FALSE_ALARMS, VALIDATION, collect_windows, recall_at, scores_of
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
-from peopleboy.tracker.rgbd.depth_view import DepthView
-from peopleboy.tracker.rgbd.human_windows import SIZES, Image, WindowRange, range_of, window_of
-from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection, PreDetector
-from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig, HypothesesConfig
-from peopleboy.tracker.rgbd.u_depth import UDepthConfig
-from peopleboy.tracker.rgbd.v_disparity import HeightLine
-from peopleboy.tracker.rgbd.window_model import people_detector, shipped_windows
+from peopleboy.tracker.reproductions.rgbd.rgbd_config import FloorFilterConfig, HypothesesConfig
+from peopleboy.tracker.sensors.depth.depth_view import DepthView, Image
+from peopleboy.tracker.sensors.depth.human_windows import SIZES, WindowRange, range_of, window_of
+from peopleboy.tracker.sensors.depth.pre_detection import HumanSize, Layout, PreDetection, PreDetector
+from peopleboy.tracker.sensors.depth.u_depth import UDepthConfig
+from peopleboy.tracker.sensors.depth.v_disparity import HeightLine
+from peopleboy.tracker.sensors.depth.window_model import people_detector, shipped_windows
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]
@@ -313,8 +313,8 @@ def _verified(frame: Frame, layout: Layout, view: DepthView) -> Iterator[_Window
     model, depth, colour = shipped_windows(sees_depth=True), frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
     for found in layout.detections:
         kind = range_of(found.z_m, layout.floor, view, len(depth))
-        window = window_of(found, kind, layout.floor, view)
-        if model.look(colour, depth, found.z_m, window, kind) > OURS.least_score(kind):
+        window = window_of(found.box, found.z_m, kind, layout.floor, view)
+        if model.look(colour, depth, found.z_m, window, kind) > PARTICLES.least_score(kind):
             yield kind, window
 
 
@@ -333,7 +333,7 @@ def _people(everybody: Sequence[FloorPerson], view: DepthView, shape: tuple[int,
             box=box, x_m=0.0, z_m=z_m, width_m=_TORSO_M, height_m=0.0, depth_m=0.0, probability=1.0
         )
         is_plain = person.is_counted and person.truth.occluded_fraction < _HIDDEN and 0.0 <= middle < shape[1]
-        windows = {kind: window_of(body, kind, floor, view) for kind in WindowRange}
+        windows = {kind: window_of(body.box, body.z_m, kind, floor, view) for kind in WindowRange}
         found.append(_Sought(windows, range_of(z_m, floor, view, shape[0]), is_plain))
     return found
 

@@ -30,6 +30,7 @@ from peopleboy.studies.reproductions.experiments.drive_scores import hit_rows
 from peopleboy.studies.reproductions.experiments.drive_tracking import (
     CHOICES,
     DEFAULT,
+    FILTERS,
     NO_DEPTH,
     SETS,
     set_name,
@@ -162,7 +163,7 @@ def draw_crossing(films: Mapping[str, Film]) -> Figure:
     paths = {
         "true": _counted(film),
         "filters without depth": _rows(film[NO_DEPTH]["tracks"]),
-        "filters with depth": _rows(film[DEFAULT]["tracks"]),
+        "filters with depth": _rows(film[FILTERS]["tracks"]),
     }
     figure = canvas(3.2)
     for axes, (title, rows) in zip(

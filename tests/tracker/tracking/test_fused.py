@@ -6,13 +6,15 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from itertools import islice
 
+import numpy as np
 import pytest
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import calibrations_of
+from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Frame
-from peopleboy.tracker.sensors.depth import DepthExplanation
+from peopleboy.tracker.sensors.depth.depth_sensor import DepthExplanation
 from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaExplanation
 from peopleboy.tracker.sensors.thermal.thermal_sensor import DetectionExplanation
 from peopleboy.tracker.track import Track
@@ -77,6 +79,16 @@ def test_the_panorama_is_used_where_it_is_mounted() -> None:
     assert any({THERMAL, PANORAMA} <= set(track.boxes) for track in tracks)
     kinds = {type(part) for part in parts_of(explanation_of(tracker))}
     assert kinds == {DetectionExplanation, DepthExplanation, PanoramaExplanation}
+
+
+@pytest.mark.slow
+def test_the_depth_camera_alone_gives_boxes_in_the_thermal_image_too() -> None:
+    images = frames("single_stationary", 60, AHEAD)
+    both = list(played("fused", images))[-1]
+    (track,) = list(played("rgbd", images, ("thermal", "colour")))[-1]
+    assert set(track.boxes) == {THERMAL, DEPTH}
+    for camera in track.boxes:
+        assert iou(np.array(track.boxes[camera]), np.array(both[0].boxes[camera])) > 0.7
 
 
 def test_the_panorama_is_not_required() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -105,6 +107,16 @@ def test_hidden_people_are_told_for_a_share_of_how_long_they_were_watched(
     )
     assert hidden.is_output(gone_s) == (gone_s <= longest_s)
     assert away.is_output(gone_s) == (gone_s <= CONFIG.max_coast_s)
+
+
+@given(st.floats(0.0, 10.0), st.floats(0.0, 10.0))
+def test_a_visible_part_of_an_occluded_person_counts_like_a_detection_for_some_time(
+    present_s: float, gone_s: float
+) -> None:
+    target = known()
+    target.existence = replace(CONFIG, max_present_s=2.0)
+    target.is_hidden, target.log_odds, target.present_s = True, CONFIG.highest, present_s
+    assert target.is_output(gone_s) == (gone_s - min(present_s, 2.0) <= CONFIG.max_coast_s)
 
 
 def test_who_stands_still_is_no_new_sight_in_every_image() -> None:
