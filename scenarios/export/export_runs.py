@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field
 
@@ -11,12 +11,16 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.formats import FORMATS, takes
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
+from peopleboy.scenarios.export.yolo import ENCLOSED, VISIBLE, WHOLE, usual_boxes
 from peopleboy.scenarios.run_folder.atomic_output import atomic_folder
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.scores.evaluate_runs import CALLED, boxed_cameras, kind_of_boxes
 from peopleboy.settings import Metavar
 from peopleboy.tracker.footage.box_kinds import BoxKind
+
+_YOLO: Final = ("yolo", "yolo-pose")
+_BOXES: Final = {"mot": tuple(BoxKind), **dict.fromkeys(_YOLO, (VISIBLE, WHOLE))}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,8 +49,11 @@ class ExportOptions:
         ),
     ] = None
     boxes: Annotated[
-        BoxKind | None,
-        Field(description="Ground-truth boxes in mot: torso or whole person.  [default: torso]"),
+        Literal["torso", "whole", "visible"] | None,
+        Field(
+            description="Ground-truth boxes: torso or whole person in mot, whole person or visible part in "
+            "yolo and yolo-pose.  [default: torso in mot, visible in yolo, whole in yolo-pose]"
+        ),
     ] = None
     epoch: Annotated[
         str | None,
@@ -85,6 +92,8 @@ def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> N
     if boxes is not None and not takes(form, "boxes"):
         having = [name for name in FORMATS if takes(name, "boxes")]
         raise BadInput(f"--boxes {boxes}: only {', '.join(having)} has a choice of boxes; omit the option")
+    if boxes is not None and boxes not in (choices := _BOXES.get(form, (boxes,))):
+        raise BadInput(f"--boxes {boxes}: {form} has {' or '.join(choices)}; choose one of them")
     for option, value in (("epoch", options.epoch), ("ros_distro", options.ros_distro)):
         if value is not None and not takes(form, option):
             raise BadInput(f"--{option.replace('_', '-')} {value}: applies to mcap only; omit the option")
@@ -92,8 +101,8 @@ def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> N
     splits = {split: [run.name for run in own] for split, own in by_split(runs).items() if split}
     about |= {"splits": splits} if splits else {}
     asked: dict[str, Any] = {
-        "camera": camera, "least_px": least_px, "boxes": boxes, "epoch": options.epoch,
-        "ros_distro": options.ros_distro,
+        "camera": camera, "least_px": least_px, "epoch": options.epoch, "ros_distro": options.ros_distro,
+        "boxes": BoxKind(boxes) if form == "mot" and boxes else boxes,
     }  # fmt: skip
     chosen = {name: value for name, value in asked.items() if value is not None}
     with atomic_folder(options.out, about | chosen, overwrite=options.overwrite) as folder:
@@ -103,9 +112,13 @@ def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> N
 def notes_on(runs: Sequence[FinishedRun], options: ExportOptions) -> Iterator[str]:
     """Return notes on runs that were cut off, and on boxes of another kind than the truth's."""
     yield from (f"{run.folder}: {run.incomplete}" for run in runs if run.incomplete)
-    if not takes(options.form, "boxes"):
+    if options.form in _YOLO and options.boxes is None:
+        kind = usual_boxes(has_poses=options.form != _YOLO[0])
+        other = VISIBLE if kind == WHOLE else WHOLE
+        yield f"boxes enclose {ENCLOSED[kind]}; with --boxes {other}, {ENCLOSED[other]}"
+    if options.form != "mot":
         return
-    there, name = options.boxes or BoxKind.TORSO, options.camera or "thermal"
+    there, name = BoxKind(options.boxes or BoxKind.TORSO), options.camera or "thermal"
     kinds = {
         run.about.tracker: kind_of_boxes(run.folder, name, run.about.tracker, BoxKind(run.about.boxes))
         for run in runs

@@ -2,8 +2,12 @@
 
 data.yaml                      folders of each split; classes; keypoints and their mirror images
 images/train/RUN_000001.png    images of the camera
-labels/train/RUN_000001.txt    class, and middle, width and height of the visible box, as shares of the image;
-                               of poses also u, v and visibility of each keypoint
+labels/train/RUN_000001.txt    class, and middle, width and height of the box, as shares of the image; of
+poses
+                               also u, v and visibility of each keypoint
+
+Boxes enclose the visible part of a person, as detectors are trained, or the whole person as far as it is
+inside the image. Poses have whole boxes by default, so that hidden keypoints are inside them.
 
 Runs outside a rendered set have no splits: they are in images/all, which data.yaml names for training and for
 validation, as YOLO requires both. A person across a panorama's seam has two boxes; each keypoint belongs to
@@ -39,13 +43,18 @@ from peopleboy.scenarios.run_folder.run_tables import TRUTH, Row
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 from peopleboy.sim.truth.truth import Box
+from peopleboy.tracker.boxes import within_image
 
 EVERYTHING: Final = "all"
 
 LEAST_PX: Final = 3.0
 _PERSON: Final = 0  # YOLO counts classes from 0
 _EDGES: Final = tuple(f"visible_{edge}_px" for edge in ("left", "top", "width", "height"))
-_COLUMNS: Final = ("frame", "id", *_EDGES, "joints_px", "joint_is_visible")
+_WHOLE_EDGES: Final = tuple(f"whole_{edge}_px" for edge in ("left", "top", "width", "height"))
+VISIBLE: Final = "visible"
+WHOLE: Final = "whole"
+ENCLOSED: Final = {VISIBLE: "the visible part of people", WHOLE: "whole people, hidden parts included"}
+_COLUMNS: Final = ("frame", "id", *_EDGES, *_WHOLE_EDGES, "joints_px", "joint_is_visible")
 
 
 def write_yolo(
@@ -54,29 +63,33 @@ def write_yolo(
     play: Play,
     camera: str = "thermal",
     least_px: float = LEAST_PX,
+    boxes: str | None = None,
     *,
     has_poses: bool = False,
 ) -> None:
-    """Write boxes around the visible parts of people, except boxes narrower or lower than `least_px`.
+    """Write boxes of people, except of people whose visible part is narrower or lower than `least_px`.
 
     Args:
         runs: the runs to write.
         folder: output folder.
         play: returns the ticks of a run.
         camera: camera of the images and boxes.
-        least_px: minimum width and height of boxes [px].
+        least_px: minimum width and height of the visible part [px].
+        boxes: "visible" or "whole"; None for the usual ones, whole with poses and visible without.
         has_poses: whether labels include the 17 keypoints of COCO.
 
     Raises:
         BadInput: some runs have splits and others do not, or one has no such 8-bit camera.
     """
-    what = _Labels(camera, least_px, has_poses)
+    kind = boxes or usual_boxes(has_poses=has_poses)
+    what = _Labels(camera, least_px, has_poses, kind == WHOLE)
     sorted_runs = {
         split or EVERYTHING: [_eight_bits(run, camera) for run in own]
         for split, own in by_split(runs).items()
     }
     settings = yaml.safe_dump(_settings(sorted_runs, has_poses), sort_keys=False, default_flow_style=None)
-    (folder / "data.yaml").write_text(settings, encoding="utf-8")
+    heading = f"# boxes enclose {ENCLOSED[kind]}\n"
+    (folder / "data.yaml").write_text(heading + settings, encoding="utf-8")
     for split, every in sorted_runs.items():
         images, labels = (folder / kind / split for kind in ("images", "labels"))
         for place in (images, labels):
@@ -87,15 +100,21 @@ def write_yolo(
             _write_images(shots, images, play)
 
 
+def usual_boxes(*, has_poses: bool) -> str:
+    """Return what boxes enclose by default."""
+    return WHOLE if has_poses else VISIBLE
+
+
 write_yolo_pose = partial(write_yolo, has_poses=True)
 
 
 class _Labels(NamedTuple):
-    """What is exported: camera, minimum size of boxes [px], and whether poses are included."""
+    """What is exported: camera, minimum size [px], and whether there are poses and boxes are whole."""
 
     camera: str
     least_px: float
     has_poses: bool
+    is_whole: bool
 
 
 def _write_images(shots: OneCamera, folder: Path, play: Play) -> None:
@@ -145,13 +164,25 @@ def _labels(shots: OneCamera, what: _Labels) -> Iterator[tuple[int, str]]:
 
 
 def _lines(row: Row, shots: OneCamera, what: _Labels) -> Iterator[str]:
+    if min(row[edge] for edge in _EDGES[2:]) < what.least_px:
+        return
     left, top, width, height = (row[edge] for edge in _EDGES)
     parts = box_parts((left, top, width, height), shots.camera)
+    if what.is_whole:
+        whole = box_parts(tuple(row[edge] for edge in _WHOLE_EDGES), shots.camera)
+        parts = tuple(_inside(part, shots) for part in whole) if len(whole) >= len(parts) else parts
     joints = np.reshape(row["joints_px"], (-1, 2)).tolist()
     points = keypoints_from_corner(joints, row["joint_is_visible"], shots.size) if what.has_poses else []
     for part in parts:
         if min(part[2:]) >= what.least_px:
             yield " ".join([str(_PERSON), *_middle(part, shots), *_poses(points, part, parts, shots)])
+
+
+def _inside(box: Box, shots: OneCamera) -> Box:
+    """Clip a box to the image, whose corner is half a pixel from the middle of the first pixel."""
+    from_corner = np.array([box[0] + CORNER_PX, box[1] + CORNER_PX, *box[2:]])
+    left, top, width, height = within_image(from_corner, *shots.size).tolist()
+    return left - CORNER_PX, top - CORNER_PX, width, height
 
 
 def _middle(box: Box, shots: OneCamera) -> Iterator[str]:

@@ -59,9 +59,11 @@ def test_a_loader_of_others_finds_the_boxes_of_the_table(
         frame = int(Path(path).stem.rpartition("_")[2])
         width, height = SIZES[camera]
         assert image.shape == (height, width, 3)
-        wanted = np.array([[row[edge] for edge in EDGES] for row in truth.get(frame, [])]).reshape(-1, 4)
+        edges = EDGES if form == "yolo" else tuple(edge.replace("visible", "whole") for edge in EDGES)
+        wanted = np.array([[row[edge] for edge in edges] for row in truth.get(frame, [])]).reshape(-1, 4)
         corner = wanted[:, :2] + 0.5
-        assert found.xyxy == pytest.approx(np.hstack([corner, corner + wanted[:, 2:]]), abs=0.01)
+        inside = np.hstack([corner, corner + wanted[:, 2:]]).clip(0, (width, height) * 2)
+        assert found.xyxy == pytest.approx(inside, abs=0.01)
         compared += len(wanted)
     assert compared > 60
 
@@ -84,6 +86,27 @@ def test_keypoints_are_the_joints_of_the_table(crossing: Path, poses: Path) -> N
             assert np.array_equal(points[:, 2], wanted)
             flags |= set(wanted.tolist())
     assert flags == {0, 1, 2}
+
+
+def test_hidden_keypoints_lie_in_whole_boxes_and_visible_boxes_can_be_asked_for(
+    crossing: Path, poses: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "visible"
+    command = ("export", crossing, "--format", "yolo-pose", "--camera", "colour", "--boxes", "visible")
+    assert run_cli(*command, "--out", out) == 0
+    outside = {}
+    for folder in (poses, out):
+        points, beyond = 0, 0
+        for path in (folder / "labels" / EVERYTHING).iterdir():
+            for line in path.read_text().splitlines():
+                values = np.array(line.split(), np.float64)
+                joints = values[5:].reshape(17, 3)
+                hidden = joints[joints[:, 2] == 1][:, :2]
+                points += len(hidden)
+                beyond += int((np.abs(hidden - values[1:3]) > values[3:5] / 2 + 0.01).any(axis=1).sum())
+        outside[folder] = beyond / points
+    assert outside[poses] < 0.02 < outside[out]
+    assert (out / "data.yaml").read_text().startswith("# boxes enclose the visible part")
 
 
 def test_a_mirror_swaps_left_and_right_and_nothing_else(poses: Path) -> None:
