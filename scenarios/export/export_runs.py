@@ -91,7 +91,7 @@ def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> N
         )
     if boxes is not None and not takes(form, "boxes"):
         having = [name for name in FORMATS if takes(name, "boxes")]
-        raise BadInput(f"--boxes {boxes}: only {', '.join(having)} has a choice of boxes; omit the option")
+        raise BadInput(f"--boxes {boxes}: only {', '.join(having)} have a choice of boxes; omit the option")
     if boxes is not None and boxes not in (choices := _BOXES.get(form, (boxes,))):
         raise BadInput(f"--boxes {boxes}: {form} has {' or '.join(choices)}; choose one of them")
     for option, value in (("epoch", options.epoch), ("ros_distro", options.ros_distro)):

@@ -25,7 +25,7 @@ def copy(run: Path, to: Path) -> Path:
 
 def test_every_format_has_a_writer() -> None:
     assert all(callable(FORMATS[name]) for name in FORMATS)
-    assert [name for name in FORMATS if takes(name, "boxes")] == ["mot"]
+    assert [name for name in FORMATS if takes(name, "boxes")] == ["mot", "yolo", "yolo-pose"]
     assert [name for name in FORMATS if takes(name, "least_px")] == ["yolo", "yolo-pose"]
 
 
