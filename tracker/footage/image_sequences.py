@@ -2,6 +2,8 @@
 
 import os
 from collections.abc import Iterator, Sequence
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Final, Protocol
 
@@ -223,8 +225,9 @@ class Video:
                 yield np.asarray(picture[..., ::-1])
         finally:
             film.release()
-        if note := self._describe_end(count, clock):
-            self.notes.append(f"{self.path}: {note}")
+        for note in (self._describe_end(count, clock), describe_sizes(self.path)):
+            if note:
+                self.notes.append(f"{self.path}: {note}")
 
     def _describe_end(self, count: int, clock: "FrameClock") -> str:
         """Return why there are other pictures than the length of the video and its frame rate suggest."""
@@ -250,6 +253,27 @@ class Video:
                 "a folder of pictures always works"
             )
         return film
+
+
+def describe_sizes(path: Path) -> str:
+    """Return a note if the pictures of a video change their size, which OpenCV hides; empty without PyAV."""
+    if find_spec("av") is None:
+        return ""
+    av = import_module("av")
+    sizes: list[str] = []
+    try:
+        with av.open(str(path)) as film:
+            stream = film.streams.video[0]
+            stream.codec_context.skip_frame = "NONKEY"  # a new size begins with a key frame
+            for picture in film.decode(stream):
+                size = f"{picture.width}x{picture.height}"
+                if size not in sizes:
+                    sizes.append(size)
+    except (av.FFmpegError, IndexError, ValueError):
+        pass  # damage is noted elsewhere
+    if len(sizes) < 2:
+        return ""
+    return f"its pictures change size, {', '.join(sizes)}; all are scaled to the first"
 
 
 class FrameClock:

@@ -236,6 +236,28 @@ def test_a_video_with_uneven_times_is_not_taken_for_a_damaged_one(tmp_path):
     assert footage.times_s == pytest.approx(np.array([0, 2, 4, 5, 17, 19, 20]) / 30, abs=1e-3)
 
 
+def test_a_video_whose_size_changes_is_noted(tmp_path):
+    av = pytest.importorskip("av")
+    parts = []
+    for width, height in ((64, 48), (32, 24)):
+        with av.open(str(tmp_path / "part.ts"), "w", format="mpegts") as film:
+            stream = film.add_stream("mpeg2video", rate=15)
+            stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
+            for level in range(24):
+                picture = np.full((height, width, 3), 10 * level, np.uint8)
+                film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
+            film.mux(stream.encode())
+        parts.append((tmp_path / "part.ts").read_bytes())
+    (tmp_path / "both.ts").write_bytes(b"".join(parts))
+    footage = open_footage(tmp_path / "both.ts")
+    assert {picture.shape for picture in footage} == {(48, 64, 3)}
+    assert any("64x48, 32x24" in note for note in footage.notes)
+    (tmp_path / "one.ts").write_bytes(parts[0])
+    single = open_footage(tmp_path / "one.ts")
+    list(single)
+    assert not [note for note in single.notes if "change size" in note]
+
+
 def test_a_folder_that_vanishes_is_refused(tmp_path):
     with refused(tmp_path / "gone"):
         pictures_in(tmp_path / "gone")
