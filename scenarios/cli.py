@@ -104,7 +104,7 @@ def main(arguments: Sequence[str] | None = None) -> Any:
         click.echo("peopleboy: interrupted", err=True)
         code = 130
     except BadInput as error:
-        code = _complain(str(error))
+        code = max(map(_complain, error.lines))
     except (OwnCodeFailed, TasksFailed) as error:
         click.echo(f"peopleboy: {error}", err=True)
         code = FAILED

@@ -150,17 +150,36 @@ def show(scenario: str, seed: int | None, out: Path | None, output: Output) -> N
     """Draw the floor plan of a scenario, with paths and times.
 
     With --json, the command also prints the resolved scenario, including all values that are sampled from the
-    seed.
+    seed. If paths of a scenario are faulty, the command lists all faults, marks them in the plan by their
+    numbers, and exits with code 2.
     """
     from peopleboy.scenarios.files.load import load_scenario
 
-    loaded = load_scenario(scenario)
+    try:
+        loaded = load_scenario(scenario)
+    except BadInput as error:
+        _show_faults(scenario, seed, out, error)
+        raise
     from peopleboy.scenarios.drawing.draw_plan import draw_plan  # here, as Matplotlib loads slowly
 
     path = out if out is not None else Path(f"{loaded.name}-plan.png")
     seed = loaded.seed if seed is None else seed
     draw_plan(loaded, seed, path)
     output.results(lambda: {"plan": str(path), "scenario": loaded.resolved(seed)}, lambda: click.echo(path))
+
+
+def _show_faults(scenario: str, seed: int | None, out: Path | None, error: BadInput) -> None:
+    """Draw a refused scenario with its faults, as far as it can be drawn."""
+    from peopleboy.scenarios.files.load import load_unchecked
+
+    loaded = load_unchecked(scenario)
+    if loaded is None:
+        return
+    from peopleboy.scenarios.drawing.draw_plan import draw_plan  # here, as Matplotlib loads slowly
+
+    path = out if out is not None else Path(f"{loaded.name}-plan.png")
+    draw_plan(loaded, loaded.seed if seed is None else seed, path, error.keys)
+    click.echo(f"{path} shows the faults, numbered in this order:", err=True)
 
 
 @click.command(cls=FieldsCommand)

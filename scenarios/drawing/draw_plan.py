@@ -1,6 +1,7 @@
 """Draw the plan of a scenario: the place, warm objects, walking paths with times, and the robot's view."""
 
 import textwrap
+from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Final
@@ -13,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, Key
 from peopleboy.scenarios.drawing.plan_paths import COLOUR, draw_moves, draw_person, draw_robot
 from peopleboy.scenarios.drawing.plan_sheet import (
     INK,
@@ -32,7 +33,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.atomic_output import write_aside, writing_to
 from peopleboy.sim.world_config import WorldConfig
 
-_PERSON, _ROBOT = "#1f6fb4", "#c0392b"
+_PERSON, _ROBOT, _FAULT = "#1f6fb4", "#c0392b", "#e00000"
 _TIMES: Final = "Times hold for people who walk undisturbed; people who give way to others arrive later."
 
 
@@ -83,13 +84,14 @@ _WIDTH_IN, _HEAD_IN, _FOOT_IN, _SIDE_IN, _DPI = 11.0, 0.85, 1.3, 0.25, 130
 _BAR_IN = 0.9  # room for the temperature scale on the right
 
 
-def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
+def draw_plan(scenario: Scenario, seed: int, path: Path, faults: Sequence[Key] = ()) -> None:
     """Draw a scenario as it is played with a seed, and save the picture.
 
     Args:
         scenario: what to draw.
         seed: seed of the variations.
         path: file of the picture, such as plan.png.
+        faults: keys of values that are wrong; those that are places are marked with their numbers from 1.
     """
     config = scenario.world(seed)
     figure = Figure(dpi=_DPI, facecolor=PAPER)
@@ -104,6 +106,7 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
     )
     for axes in found:
         _draw_section(axes, scenario, config)
+        _mark_faults(axes, scenario, faults)
     _caption(figure, scenario, seed)
     _temperatures(figure, found)
     draw_legend(figure, _SIDE_IN, has_moves=bool(scenario.place.movers))
@@ -131,6 +134,36 @@ def _draw_section(axes: Axes, scenario: Scenario, config: WorldConfig) -> None:
     for index, person in enumerate(config.people):
         draw_person(axes, labels, person, scenario.duration_s, _PEOPLE[index % len(_PEOPLE)])
     name_things(labels, scenario.place)
+
+
+def _mark_faults(axes: Axes, scenario: Scenario, faults: Sequence[Key]) -> None:
+    """Mark wrong places with a ring and their number; those outside the floor at its border."""
+    min_x, min_y, max_x, max_y = scenario.place.bounds
+    shared: dict[tuple[float, float], list[str]] = {}
+    for number, key in enumerate(faults, start=1):
+        place = _place_at(scenario, key)
+        if place is not None:
+            x, y = min(max(place[0], min_x), max_x), min(max(place[1], min_y), max_y)
+            shared.setdefault((x, y), []).append(str(number))
+    for (x, y), numbers in shared.items():
+        axes.plot(x, y, "o", mfc="none", mec=_FAULT, ms=15, mew=2.0, zorder=9)
+        style = {"boxstyle": "circle,pad=0.2", "fc": _FAULT, "ec": "white"}
+        beside = axes.annotate(
+            ",".join(numbers), (x, y), (11, 11), textcoords="offset points", size=8, color="white", bbox=style
+        )
+        beside.set_zorder(10)
+
+
+def _place_at(scenario: Scenario, key: Key) -> tuple[float, float] | None:
+    """Return the place [m] that a key of the scenario file leads to; None if it leads elsewhere."""
+    value: object = scenario.spec
+    try:
+        for step in key:
+            value = value[step] if isinstance(step, int) else getattr(value, step)  # type: ignore[index]
+    except (AttributeError, IndexError, TypeError):
+        return None
+    is_place = bool(key) and key[-1] == "at_m" and isinstance(value, tuple)
+    return value if is_place else None  # type: ignore[return-value]
 
 
 def _caption(figure: Figure, scenario: Scenario, seed: int) -> None:

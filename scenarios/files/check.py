@@ -9,7 +9,7 @@ from typing import get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput, Key, dotted, found_in
+from peopleboy.bad_input import BadInput, Key, dotted, found_in, gathered
 from peopleboy.scenarios.files.check_moves import MovedThings
 from peopleboy.scenarios.files.people import PersonSpec
 from peopleboy.scenarios.files.robot import ORACLE, RobotSpec, check_cameras
@@ -52,17 +52,29 @@ class Ground:
     moved: MovedThings
 
     def fault(self, person: PersonSpec) -> BadInput | None:
-        """Return the fault of a person's path, with keys below the person's; None for a walkable path."""
-        return self._path_fault(person.path) or self.moved.fault(person, BODY_M)
+        """Return the first fault of a person's path, with keys below the person's; None without any."""
+        return next(self.faults(person), None)
 
-    def _path_fault(self, path: Sequence[Waypoint]) -> BadInput | None:
+    def faults(self, person: PersonSpec) -> Iterator[BadInput]:
+        """Yield the faults of a person's path, with keys below the person's."""
+        found = False
+        for fault in self._path_faults(person.path):
+            found = True
+            yield fault
+        moved = None if found else self.moved.fault(person, BODY_M)
+        if moved is not None:
+            yield moved
+
+    def _path_faults(self, path: Sequence[Waypoint]) -> Iterator[BadInput]:
+        """Yield a fault for each waypoint that is not free, and each line between free ones that is not."""
+        is_free = False
         for index, waypoint in enumerate(path):
             fault = self._point_fault(waypoint)
-            if fault is None and index > 0:
+            was_free, is_free = is_free, fault is None
+            if fault is None and was_free:
                 fault = self._leg_fault(path[index - 1], waypoint)
             if fault is not None:
-                return BadInput(fault, key=("path", index, "at_m"))
-        return None
+                yield BadInput(fault, key=("path", index, "at_m"))
 
     def _point_fault(self, waypoint: Waypoint) -> str | None:
         x, y = waypoint.at_m
@@ -121,13 +133,12 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]],
     _check_faults(spec)
     _check_company(people, ground.moved.place)
     _check_robot(spec, ground)
-    for key, person in people:
-        with found_in(*key):
-            _check_person(person, spec.duration_s, [other.name for _, other in people])
-            fault = ground.fault(person)
-            if fault is not None:
-                raise fault
-            _check_distance(person, spec.robot)
+    names = [person.name for _, person in people]
+    faults = [
+        fault.within(*key) for key, person in people for fault in _person_faults(person, spec, ground, names)
+    ]
+    if faults:
+        raise gathered(faults)
     ground.moved.check(people, spec.robot.at_m, ROBOT_M)
     with found_in("robot", "cameras"):
         check_cameras(spec.robot)
@@ -162,10 +173,21 @@ def _check_company(people: Sequence[tuple[Key, PersonSpec]], place: Place) -> No
     _check_starts(people)
 
 
-def _check_person(person: PersonSpec, duration_s: float, names: Sequence[str]) -> None:
-    """Refuse a person whose script does not fit the duration or names an unknown person to face."""
-    _check_times(person, duration_s)
-    _check_faces(person, names)
+def _person_faults(
+    person: PersonSpec, spec: ScenarioSpec, ground: Ground, names: Sequence[str]
+) -> Iterator[BadInput]:
+    """Yield the faults of a person's script, or if there are none, those of the path and of its start."""
+    try:
+        _check_times(person, spec.duration_s)
+        _check_faces(person, names)
+    except BadInput as fault:
+        yield fault
+        return
+    yield from ground.faults(person)
+    try:
+        _check_distance(person, spec.robot)
+    except BadInput as fault:
+        yield fault
 
 
 def _check_distance(person: PersonSpec, robot: RobotSpec) -> None:

@@ -29,6 +29,16 @@ def load_scenario(name_or_path: str | Path | Scenario) -> Scenario:
     return parse_scenario(read_yaml(path), source=_shown(path), folder=path.parent)
 
 
+def load_unchecked(name_or_path: str | Path) -> Scenario | None:
+    """Load a scenario without checking paths, people and robot, to draw what is wrong; None if that fails."""
+    try:
+        path = _find(name_or_path)
+        spec = validated(ScenarioSpec, _filled_in(read_yaml(path)))
+        return make_scenario(spec, path.parent, is_checked=False)
+    except BadInput:
+        return None
+
+
 def parse_scenario(data: dict[Any, Any], *, source: str, folder: Path) -> Scenario:
     """Check the data of a scenario file.
 

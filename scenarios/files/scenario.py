@@ -261,12 +261,13 @@ class Scenario:
         return dict(self.files) | ({} if self.drive is None else {KEPT: pack_drive(self.drive)})
 
 
-def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
+def make_scenario(spec: ScenarioSpec, folder: Path, *, is_checked: bool = True) -> Scenario:
     """Build and check everything that does not depend on the seed.
 
     Args:
         spec: contents of the file.
         folder: folder of the file.
+        is_checked: whether to check paths, people and the robot; without, the scenario can only be drawn.
 
     Raises:
         BadInput: the scenario is invalid; the message starts with the key or with the file it refers to.
@@ -284,7 +285,8 @@ def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
         folder=folder,
     )
     ground = make_ground(spec, plan, place)
-    check_scenario(spec, everybody, ground)
+    if is_checked:
+        check_scenario(spec, everybody, ground)
     is_driven = spec.drawn is not None and spec.drawn.drive is not None
     return Scenario(
         spec=spec,

@@ -1,7 +1,7 @@
 """The one error that a user's mistake raises, in every room of the project."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 _LONGEST_KEY = 40  # letters shown of a key
@@ -18,20 +18,38 @@ class BadInput(ValueError):  # noqa: N818
     """Invalid input by the user: a file, flag, image or action that cannot be used.
 
     The message is one line that states the location, the error, the invalid value, and what would be valid.
-    The command line prints this line and exits with code 2.
+    The command line prints this line and exits with code 2. Several faults that were found together have a
+    line each.
 
     Attributes:
         reason: the error, and what would be valid.
         file: the file that contains the error, as the user refers to it; empty for none.
         key: the key of the invalid value; empty for the whole file.
+        others: further faults that were found with this one.
     """
 
-    def __init__(self, reason: str, *, file: str = "", key: Key = ()) -> None:
+    def __init__(
+        self, reason: str, *, file: str = "", key: Key = (), others: Sequence["BadInput"] = ()
+    ) -> None:
         super().__init__(reason)
-        self.reason, self.file, self.key = reason, file, key
+        self.reason, self.file, self.key, self.others = reason, file, key, tuple(others)
 
     def __str__(self) -> str:
-        """Return one line with file, key and reason."""
+        """Return one line with file, key and reason for each fault."""
+        return "\n".join(self.lines)
+
+    @property
+    def lines(self) -> list[str]:
+        """A line for each fault."""
+        return [self._line, *(line for other in self.others for line in other.lines)]
+
+    @property
+    def keys(self) -> list[Key]:
+        """The key of each fault."""
+        return [self.key, *(key for other in self.others for key in other.keys)]
+
+    @property
+    def _line(self) -> str:
         whole = ": ".join(part for part in (self.file, dotted(self.key), self.reason) if part)
         return _LONGEST_WORD.sub(lambda word: f"{word[0][:_WORD_START]}...{word[0][-_WORD_END:]}", whole)
 
@@ -40,9 +58,16 @@ class BadInput(ValueError):  # noqa: N818
 
         If the error already names a file, the whole error becomes the reason, and `file` is the new file.
         """
+        others = [other.within(*steps, file=file) for other in self.others]
         if self.file:
-            return BadInput(str(self), file=file, key=steps)
-        return BadInput(self.reason, file=file, key=(*steps, *self.key))
+            return BadInput(self._line, file=file, key=steps, others=others)
+        return BadInput(self.reason, file=file, key=(*steps, *self.key), others=others)
+
+
+def gathered(faults: Sequence[BadInput]) -> BadInput:
+    """Return one error for at least one fault."""
+    first, *others = faults
+    return BadInput(first.reason, file=first.file, key=first.key, others=[*first.others, *others])
 
 
 def dotted(key: Key) -> str:

@@ -385,7 +385,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         ("people[0].path[2].at_m: ", "(3.5, 2)", "(5, 4)", "'wall_north'"),
     ),
     "way through a thing": (
-        lambda d: d["people"][0]["path"].insert(1, {"at_m": [6.0, -2.7]}),
+        lambda d: d["people"][0].update(path=[{"at_m": [3.0, 1.0]}, {"at_m": [6.0, -2.7]}]),
         ("people[0].path[1].at_m: ", "(3, 1)", "(6, -2.7)", "'table_1'"),
     ),
     "the same point twice": (
@@ -468,7 +468,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         ),
     ),
     "group in a wall": (
-        lambda d: d.update(groups=[{"names": ["x", "y"], "path": [{"at_m": [3, 2.5]}, {"at_m": [4, 2.5]}]}]),
+        lambda d: d.update(groups=[{"names": ["x", "y"], "path": [{"at_m": [3, 2.5]}, {"at_m": [4, 2.1]}]}]),
         ("groups[0].path[0].at_m:", "'wall_north'"),
     ),
     "absolute URDF": (
@@ -594,3 +594,20 @@ def test_junk_anywhere_is_read_or_refused_on_one_line(random: st.DataObject) -> 
     container[key] = random.draw(JUNK)
     message = outcome(data)
     assert message is None or (message.startswith("my.yaml: ") and "\n" not in message)
+
+
+def test_all_faults_of_paths_are_said_at_once_each_on_a_line_of_its_own() -> None:
+    data = copy.deepcopy(GOOD)
+    data["people"][0]["path"][2]["at_m"] = [50.0, 4.0]
+    data["people"][1]["path"] = [{"at_m": [1.0, 0.0]}, {"at_m": [6.0, -1.5]}, {"at_m": [3.0, 2.0]}]
+    with pytest.raises(BadInput) as caught:
+        parse_scenario(data, source="my.yaml", folder=Path("/nowhere"))
+    lines = str(caught.value).splitlines()
+    assert [line.split(": ")[:2] for line in lines] == [
+        ["my.yaml", "people[0].path[2].at_m"],
+        ["my.yaml", "people[1].path[1].at_m"],
+        ["my.yaml", "people[1].path[0].at_m"],
+    ]
+    assert "outside the floor" in lines[0]
+    assert "'table_1'" in lines[1]
+    assert "inside the robot" in lines[2]
