@@ -169,9 +169,11 @@ def show(scenario: str, seed: int | None, out: Path | None, output: Output) -> N
 
 
 def _show_faults(scenario: str, seed: int | None, out: Path | None, error: BadInput) -> None:
-    """Draw a refused scenario with its faults, as far as it can be drawn."""
+    """Draw a refused scenario with its faults, if they are places and the scenario can be drawn."""
     from peopleboy.scenarios.files.load import load_unchecked
 
+    if not any(key[-1:] == ("at_m",) for key in error.keys):
+        return
     loaded = load_unchecked(scenario)
     if loaded is None:
         return

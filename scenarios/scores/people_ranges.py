@@ -38,7 +38,7 @@ class VisibleRange:
     @property
     def name(self) -> str:
         """Name for a table."""
-        return f"{self.low:.0%} to {self.high:.0%}"
+        return f"{100.0 * self.low:.0f} to {100.0 * self.high:.0f} %"
 
     def take(self, truth: TrueBoxes, occluded: ReadOccluded) -> TrueBoxes:  # noqa: ARG002
         """Return the truth, in which only people in the range are counted."""
