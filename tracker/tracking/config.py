@@ -172,6 +172,8 @@ class ExistenceConfig:
         absent: the same for a track where the background is visible.
         max_coast_s: how long an unoccluded track is output without a detection.
         max_coast_occluded_s: the same for an occluded track.
+        max_coast_covered_s: the same while the track's box still lies on that of a person who is seen.
+        covered: least overlap of these boxes.
         coast_occluded_share: the same, as a share of its observed time: a false track next to a person seems
             to be occluded by the person in the end.
         max_present_s: how long a visible part of an occluded track counts like a detection.
@@ -204,6 +206,8 @@ class ExistenceConfig:
     absent: float = 4.0
     max_coast_s: float = 0.25
     max_coast_occluded_s: float = 1.0
+    max_coast_covered_s: float = 5.0
+    covered: float = 0.4
     coast_occluded_share: float = 0.5
     max_present_s: float = math.inf
     forget_s: float = 10.0
@@ -293,6 +297,7 @@ class PeopleTrackerConfig:
             confirmed=2.3,
             shared_doubt=4.0,
             max_coast_occluded_s=0.5,
+            max_coast_covered_s=0.5,
             coast_occluded_share=math.inf,
         )
     )

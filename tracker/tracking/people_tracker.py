@@ -1,7 +1,7 @@
 """The people tracker: detections of one or several sensors become lasting tracks."""
 
 import math
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from itertools import count
 from typing import Final
 
@@ -455,6 +455,7 @@ class PeopleTracker:
             return ()
         predicted = self._predictions(frame)
         images = self._projected(frame, predicted)
+        overlaps = self._overlaps_with_seen(images.values(), frame.time_s)
         places: Sequence[FloorPlace | None] = [None] * len(predicted)
         if predicted.origin_m is not None:
             common_m = np.array([target.common_m for target in self._targets]).reshape(-1, 2)
@@ -462,7 +463,7 @@ class PeopleTracker:
         tracks = [
             self._track(row, self._boxes_of(row, images, frame.time_s), places[row], frame.time_s)
             for row, target in enumerate(self._targets)
-            if target.is_output(frame.time_s)
+            if target.is_output(frame.time_s, overlaps[row])
             and any(image is not None and image.is_inside[row] for image in images.values())
         ]
         return tuple(sorted(tracks, key=lambda track: track.id))
@@ -476,6 +477,16 @@ class PeopleTracker:
                 view = Viewpoint.of(calibration, (0, 0), predicted.origin_m, self._config.motion.toe_m)
                 images[camera] = project_boxes(predicted, view, view.shape)
         return images
+
+    def _overlaps_with_seen(self, images: Iterable[ProjectedBoxes | None], time_s: float) -> Floats:
+        """Return the greatest overlap (K,) of each track with one that is seen now, over all images."""
+        is_seen = np.array([target.seen_s >= time_s for target in self._targets], np.bool_)
+        overlaps = np.zeros(len(self._targets))
+        for image in images:
+            if image is not None and is_seen.any():
+                mutual = iou(image.boxes[:, None], image.boxes[None, is_seen])
+                overlaps = np.maximum(overlaps, mutual.max(axis=1))
+        return overlaps
 
     def _boxes_of(
         self, row: int, images: Mapping[str, ProjectedBoxes | None], time_s: float

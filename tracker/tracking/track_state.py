@@ -168,12 +168,19 @@ class TrackState:
             return Status.TRACKED
         return Status.TOTALLY_OCCLUDED if self.is_hidden else Status.PARTLY_OCCLUDED
 
-    def is_output(self, time_s: float) -> bool:
-        """Return whether the track is still reported at its predicted position."""
+    def is_output(self, time_s: float, overlap: float) -> bool:
+        """Return whether the track is still reported at its predicted position.
+
+        Args:
+            time_s: current time.
+            overlap: IoU of its box with that of a person who is seen, and so may hide this one.
+        """
         config = self.existence
         doubt = config.max_coast_s
         if self.is_hidden:
-            doubt = max(doubt, min(config.max_coast_occluded_s, config.coast_occluded_share * self.watched_s))
+            is_covered = overlap >= config.covered
+            longest_s = config.max_coast_covered_s if is_covered else config.max_coast_occluded_s
+            doubt = max(doubt, min(longest_s, config.coast_occluded_share * self.watched_s))
         return (
             self.is_confirmed
             and self.log_odds > config.deletion_log_odds
