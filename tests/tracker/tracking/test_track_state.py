@@ -44,9 +44,9 @@ def test_who_goes_on_to_look_like_nobody_is_told_no_more() -> None:
     target = known()
     images = round((CONFIG.confirmed - CONFIG.deletion_log_odds) * CONFIG.independent_s / DT_S)
     time_s = seen(target, -1.0, images - 1, 0.0)
-    assert target.is_output(time_s)
+    assert target.is_output(time_s, 0.0)
     time_s = seen(target, -1.0, 2, time_s)
-    assert not target.is_output(time_s)
+    assert not target.is_output(time_s, 0.0)
 
 
 @pytest.mark.parametrize("hider", [None, 2])
@@ -56,7 +56,7 @@ def test_who_was_away_is_told_with_the_first_image_that_shows_him(hider: int | N
         target.update_missed(hider, DT_S, is_hidden=False)
     assert target.log_odds == CONFIG.deletion_log_odds
     time_s = seen(target, 0.5, 1, 200 * DT_S)
-    assert target.is_output(time_s)
+    assert target.is_output(time_s, 0.0)
 
 
 def test_a_clear_image_counts_at_once_though_those_before_said_little() -> None:
@@ -94,19 +94,19 @@ def images_until_told(score: float, speed_m_s: float) -> int:
     raise AssertionError("never told")
 
 
-@given(st.floats(0.0, 10.0), st.floats(0.0, 3.0))
-def test_hidden_people_are_told_for_a_share_of_how_long_they_were_watched(
-    watched_s: float, gone_s: float
+@given(st.floats(0.0, 10.0), st.floats(0.0, 6.0), st.booleans())
+def test_hidden_people_are_output_for_a_share_of_how_long_they_were_watched(
+    watched_s: float, gone_s: float, is_covered: bool
 ) -> None:
     hidden, away = known(), known()
     for one in (hidden, away):
         one.watched_s, one.log_odds = watched_s, CONFIG.highest
     hidden.occluder, hidden.is_hidden = 2, True
-    longest_s = max(
-        min(CONFIG.coast_occluded_share * watched_s, CONFIG.max_coast_occluded_s), CONFIG.max_coast_s
-    )
-    assert hidden.is_output(gone_s) == (gone_s <= longest_s)
-    assert away.is_output(gone_s) == (gone_s <= CONFIG.max_coast_s)
+    most_s = CONFIG.max_coast_covered_s if is_covered else CONFIG.max_coast_occluded_s
+    longest_s = max(min(CONFIG.coast_occluded_share * watched_s, most_s), CONFIG.max_coast_s)
+    overlap = CONFIG.covered if is_covered else 0.9 * CONFIG.covered
+    assert hidden.is_output(gone_s, overlap) == (gone_s <= longest_s)
+    assert away.is_output(gone_s, overlap) == (gone_s <= CONFIG.max_coast_s)
 
 
 @given(st.floats(0.0, 10.0), st.floats(0.0, 10.0))
