@@ -116,7 +116,7 @@ def test_a_visible_part_of_an_occluded_person_counts_like_a_detection_for_some_t
     target = known()
     target.existence = replace(CONFIG, max_present_s=2.0)
     target.is_hidden, target.log_odds, target.present_s = True, CONFIG.highest, present_s
-    assert target.is_output(gone_s) == (gone_s - min(present_s, 2.0) <= CONFIG.max_coast_s)
+    assert target.is_output(gone_s, 0.0) == (gone_s - min(present_s, 2.0) <= CONFIG.max_coast_s)
 
 
 def test_who_stands_still_is_no_new_sight_in_every_image() -> None:
