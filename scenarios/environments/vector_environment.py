@@ -1,7 +1,7 @@
 """Many environments in one process, as a gymnasium vector environment."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -81,6 +81,7 @@ class StepResults:
     def begin(self, number: int, info: Infos) -> None:
         """Store the first info of an episode that begins in one of the worlds."""
         self._truths[number], self._events[number] = info["truth"], info["events"]
+        self._terms[number] = 0.0
 
     def infos(self, seeds: list[int], metrics: list[Metrics | None]) -> Infos:
         """Return the same as `join_infos` of B infos of single environments.
@@ -92,9 +93,9 @@ class StepResults:
         have = np.ones(len(seeds), np.bool_)
         terms = {name: self._terms[:, k].copy() for k, name in enumerate(TERMS)}
         columns = {
-            "truth": self._truths,
+            "truth": self._truths.copy(),
             "reward": _with_flags(terms, have),
-            "events": self._events,
+            "events": self._events.copy(),
             "seed": np.array(seeds),
         }
         found = _with_flags(columns, have)
@@ -111,6 +112,19 @@ def _with_flags(columns: dict[str, Any], have: NDArray[np.bool_]) -> Infos:
 
 
 Flags = NDArray[np.bool_]
+AUTORESETS: Final = (AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP)
+
+
+def select_infos(infos: Infos, chosen: NDArray[np.bool_]) -> Infos:
+    """Return the infos of some of B environments: the same as `join_infos` with None for the others."""
+    found: Infos = {}
+    for key, values in infos.items():
+        if isinstance(values, dict):
+            found[key] = select_infos(values, chosen)
+        else:
+            found[key] = values.copy()
+            found[key][~chosen] = None if values.dtype == object else 0
+    return found
 
 
 class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
@@ -119,42 +133,56 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
     Actions are (B, 2); an observation has the arrays of `PeopleBoyEnv` with B as the first axis, such as
     `thermal` (B, H, W, 1); returned arrays are never reused. Kinematic worlds are stepped together by
     compiled kernels, see `peopleboy.sim.batch.world_batch.KinematicBatch`. World i is bit-identical to a
-    single environment with the same seed and actions. The step after an episode's end begins the next episode
-    in that world, ignores the action, and has reward 0 (`AutoresetMode.NEXT_STEP`); `infos` has the arrays
-    that gymnasium makes of B infos.
+    single environment with the same seed and actions; `infos` has the arrays that gymnasium makes of B infos.
+
+    With `AutoresetMode.NEXT_STEP`, the step after an episode's end begins the next episode in that world,
+    ignores the action, and has reward 0. With `AutoresetMode.SAME_STEP`, the step that ends an episode begins
+    the next one: it returns the new episode's observation, and `infos` has the last observation in
+    `final_obs`, and the last info with the metrics in `final_info`.
 
     Args:
         num_envs: B.
         threads: number of threads that render images; None for one per processor. The output does not
             depend on it.
+        autoreset_mode: `AutoresetMode.NEXT_STEP` or `AutoresetMode.SAME_STEP`.
         settings: arguments of `PeopleBoyEnv`, except `render_mode`.
+
+    Attributes:
+        envs: the B single environments, for their attributes and methods other than `reset` and `step`.
 
     Raises:
         BadInput: an argument is invalid.
     """
 
-    metadata: dict[str, Any] = {  # noqa: RUF012
-        "render_modes": [], "render_fps": 15, "autoreset_mode": AutoresetMode.NEXT_STEP
-    }  # fmt: skip
-
-    def __init__(self, num_envs: int = 1, *, threads: int | None = None, **settings: Any) -> None:
+    def __init__(
+        self,
+        num_envs: int = 1,
+        *,
+        threads: int | None = None,
+        autoreset_mode: AutoresetMode = AutoresetMode.NEXT_STEP,
+        **settings: Any,
+    ) -> None:
         if not (isinstance(num_envs, int | np.integer) and num_envs >= 1):
             raise BadInput(f"num_envs {num_envs!r}: must be 1 or more")
         if settings.get("render_mode") is not None:
             raise BadInput("render_mode: a vector environment does not render; leave it out")
-        if "autoreset_mode" in settings:
-            raise BadInput(
-                "autoreset_mode: only gymnasium's own vector environments take it; "
-                "give vectorization_mode='sync' or 'async'"
-            )
+        if autoreset_mode not in AUTORESETS:
+            known = " or ".join(map(str, AUTORESETS))
+            raise BadInput(f"autoreset_mode {autoreset_mode!r}: must be {known}")
         if threads is not None and not (isinstance(threads, int | np.integer) and threads >= 1):
             raise BadInput(f"threads {threads!r}: must be 1 or more, or None for one per processor")
         self.num_envs = num_envs
         self._crew = WorkerPool(threads)
-        self._envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))
-        first = self._envs[0]
+        self.envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))
+        self.metadata = {
+            "render_modes": [],
+            "render_fps": PeopleBoyEnv.metadata["render_fps"],
+            "autoreset_mode": autoreset_mode,
+        }
+        self._resets_at_once = autoreset_mode is AutoresetMode.SAME_STEP
+        first = self.envs[0]
         self._episodes = LiveEpisodes(num_envs, first.task)
-        for number, env in enumerate(self._envs):
+        for number, env in enumerate(self.envs):
             env.join(self._episodes, number)
         self.single_action_space = first.action_space
         self.single_observation_space = first.observation_space
@@ -185,7 +213,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self._together = None  # also after an interrupt: the worlds are made anew
         found = self._empty()
         infos: list[Infos] = []
-        for number, (env, own) in enumerate(zip(self._envs, seeds, strict=True)):
+        for number, (env, own) in enumerate(zip(self.envs, seeds, strict=True)):
             observation, info = env.reset(seed=own, options=options)
             _put(found, number, observation)
             infos.append(info)
@@ -205,14 +233,35 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         for each in snapshot:
             results.take(each.numbers, self._episodes.evaluate(each, shares[each.numbers], self._track(each)))
         begun = self._begin(np.flatnonzero(is_over), results)
-        ends = (results.terminations | results.truncations).tolist()
-        metrics = [self._episodes.metrics(number) if is_end else None for number, is_end in enumerate(ends)]
-        infos = results.infos([env.seed for env in self._envs], metrics)
+        ends = results.terminations | results.truncations
+        metrics = [
+            self._episodes.metrics(number) if is_end else None for number, is_end in enumerate(ends.tolist())
+        ]
+        infos = results.infos([env.seed for env in self.envs], metrics)
         found = self._observe(snapshot)  # last, because images are rendered in the meantime
+        if self._resets_at_once and ends.any():
+            infos, begun = self._restart(found, infos, results)
         for number, observation in begun.items():
             _put(found, number, observation)
         self._keep(found)
         return found, results.rewards, results.terminations, results.truncations, infos
+
+    def _restart(self, found: Arrays, infos: Infos, results: StepResults) -> tuple[Infos, dict[int, Arrays]]:
+        """Begin new episodes where one ended in this step; return the infos and the first observations."""
+        ends = results.terminations | results.truncations
+        last = [
+            {name: found[name][k].copy() for name in found} if is_end else None
+            for k, is_end in enumerate(ends.tolist())
+        ]
+        final = {"final_obs": _array(last, last), "final_info": select_infos(infos, ends)}
+        begun = self._begin(np.flatnonzero(ends), results)
+        seeds: list[int] = [env.seed for env in self.envs]
+        return results.infos(seeds, [None] * self.num_envs) | _with_flags(final, ends), begun
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """Call a method of each environment, or get an attribute, as in gymnasium's vector environments."""
+        found = [getattr(env, name) for env in self.envs]
+        return tuple(one(*args, **kwargs) if callable(one) else one for one in found)
 
     def vary_by(self, options: dict[str, Any]) -> None:
         """Vary further episodes in every world, as in a single environment.
@@ -220,12 +269,12 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         Raises:
             BadInput: an option is invalid.
         """
-        for env in self._envs:
+        for env in self.envs:
             env.vary_by(options)
 
     def close_extras(self, **_: Any) -> None:
         """Free all worlds."""
-        for env in self._envs:
+        for env in self.envs:
             env.close()
         self._crew.close()
 
@@ -246,14 +295,14 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
     def _step_together(self, active: Numbers, shares: NDArray[np.float64]) -> list[Snapshot]:
         """Step the worlds whose episodes are under way."""
         if self._together is None:
-            self._together = WorldBatch([env.world for env in self._envs], self._crew)
+            self._together = WorldBatch([env.world for env in self.envs], self._crew)
         commands = (shares * self._episodes.records["limits"])[active]
-        if not any(env.has_faults for env in self._envs):
+        if not any(env.has_faults for env in self.envs):
             return self._together.step(active, commands)
-        commands *= np.array([[self._envs[number].disturb()] for number in active.tolist()])
+        commands *= np.array([[self.envs[number].disturb()] for number in active.tolist()])
         return [
             each.with_senses(
-                [self._envs[k].spoil(each.senses(row)) for row, k in enumerate(each.numbers.tolist())]
+                [self.envs[k].spoil(each.senses(row)) for row, k in enumerate(each.numbers.tolist())]
             )
             for each in self._together.step(active, commands)
         ]
@@ -263,14 +312,14 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         if not self._builder.tracks:
             return None
         return [
-            self._envs[number].track(snapshot, row) for row, number in enumerate(snapshot.numbers.tolist())
+            self.envs[number].track(snapshot, row) for row, number in enumerate(snapshot.numbers.tolist())
         ]
 
     def _begin(self, numbers: Numbers, results: StepResults) -> dict[int, Arrays]:
         """Begin new episodes in some worlds; return their observations."""
         found = {}
         for number in numbers.tolist():
-            found[number], info = self._envs[number].reset()
+            found[number], info = self.envs[number].reset()
             results.begin(number, info)
             self._together = None
         return found
@@ -283,7 +332,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         for each in snapshot:
             tracks = None
             if self._builder.tracks:
-                tracks = np.stack([self._envs[number].tracks for number in each.numbers.tolist()])
+                tracks = np.stack([self.envs[number].tracks for number in each.numbers.tolist()])
             for name, array in self._builder.build(each, self._episodes.records, tracks).items():
                 found[name][each.numbers] = array
             for name, (rows, array) in self._builder.images(each).items():

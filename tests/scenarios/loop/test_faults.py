@@ -447,7 +447,7 @@ def test_environments_push_and_lift_robots(tmp_path):
         single.step(np.zeros(2, np.float32))
         vector.step(np.zeros((2, 2), np.float32))
         poses.append(single.world.robot.pose())
-        assert vector._envs[0].world.robot.pose() == poses[-1]
+        assert vector.envs[0].world.robot.pose() == poses[-1]
     assert poses[7].y == pytest.approx(0.6 * 8 / 15)
     assert poses[-1].heading == pytest.approx(math.pi / 2.0)
     single.close()
