@@ -105,7 +105,7 @@ def test_it_is_compared_with_others_by_the_scenario_s_own_task(
     assert f"{name}@truth" in capsys.readouterr().out
     kept = json.loads((home / "compared" / "brief" / "comparison.json").read_text(encoding="utf-8"))
     theirs, ours = (kept["controllers"][f"{who}@truth"]["mean"] for who in (name, "follow_person"))
-    assert theirs.keys() == ours.keys()
+    assert theirs.keys() >= ours.keys()  # comfort is that of a robot that moves
     assert theirs["mean_distance_error_m"] != ours["mean_distance_error_m"]
     assert parse_controller(f"{name}@truth") == Controller(name, "truth")
 

@@ -60,7 +60,8 @@ def test_a_started_person_is_tracked_and_the_folder_is_like_that_of_a_run(tmp_pa
     assert tracked.scores.mot.identity.idr > 90
     out = tmp_path / "out"
     assert {path.name for path in out.iterdir()} == {
-        *("tracks.txt", "tracks.parquet", "run.json", "contact_sheet.png", "metrics.json", "truth")
+        *("tracks.txt", "tracks.parquet", "run.json", "contact_sheet.png", "metrics.json", "truth"),
+        "latency.txt",
     }
     about = json.loads((out / "run.json").read_text())
     assert (about["status"], about["frames"], about["width"]) == ("complete", 12, 160)

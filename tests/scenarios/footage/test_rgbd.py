@@ -112,7 +112,7 @@ def test_the_folder_says_how_it_was_made(tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     out = tmp_path / "out"
     assert {path.name for path in out.iterdir()} == {
-        *("tracks.txt", "tracks.parquet", "run.json", "contact_sheet.png")
+        *("tracks.txt", "tracks.parquet", "run.json", "contact_sheet.png", "latency.txt")
     }
     about = json.loads((out / "run.json").read_text())
     assert (about["tracker"], about["depth"], about["depth_scale_m"]) == ("rgbd", "depth", 0.0002)
