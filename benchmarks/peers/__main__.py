@@ -58,8 +58,9 @@ def main(scenarios: str, seeds: int, trackers: str, workers: Workers, out: Path)
     click.echo()
     print_occlusions(results)
     write_results(results, out / "results.json")
-    draw_occlusions(results, out / "occlusions.png")
-    click.echo(f"\n{out / 'occlusions.png'}")
+    click.echo()
+    for path in draw_occlusions(results, out):
+        click.echo(path)
 
 
 def _compete_all(

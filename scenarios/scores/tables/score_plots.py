@@ -94,15 +94,20 @@ def draw_plots(
         occlusions: full occlusions by tracker.
         by_visibility: the runs, scored for each of `VISIBLE_RANGES`.
     """
-    kept = {tracker: identity_kept(of_tracker) for tracker, of_tracker in occlusions.items()}
-    lengths = [f"< {high:g}" for high in LENGTHS_S[1:-1]] + [f"> {LENGTHS_S[-2]:g}"]
     hota = {tracker: hota_by_visibility(by_visibility, tracker) for tracker in occlusions}
     fractions = [f"{100 * one.low:.0f}-{100 * one.high:.0f}" for one in VISIBLE_RANGES]
     folder.mkdir(parents=True, exist_ok=True)
     return [
-        *_save(folder / "identity_kept", kept, lengths, ("full occlusion [s]", "identity kept [%]")),
+        *draw_identity_kept(folder, occlusions),
         *_save(folder / "hota_by_visibility", hota, fractions, ("visible fraction [%]", "HOTA [%]")),
     ]
+
+
+def draw_identity_kept(folder: Path, occlusions: Mapping[str, Sequence[Occlusion]]) -> list[Path]:
+    """Write the plot of identities kept through full occlusions, by tracker, and return its paths."""
+    kept = {tracker: identity_kept(of_tracker) for tracker, of_tracker in occlusions.items()}
+    lengths = [f"< {high:g}" for high in LENGTHS_S[1:-1]] + [f"> {LENGTHS_S[-2]:g}"]
+    return _save(folder / "identity_kept", kept, lengths, ("full occlusion [s]", "identity kept [%]"))
 
 
 def _save(
