@@ -24,7 +24,7 @@ from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.textures.texture_place import paint_place
 from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.renderer import Renderer, RenderPass, Scene, look
-from peopleboy.sim.rendering.view import BLIND, NOBODY
+from peopleboy.sim.rendering.view import BLIND, NO_PERSON
 from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME as ROBOT
 from peopleboy.sim.robot.robot_body import RADIUS_M, robot_material
@@ -302,7 +302,7 @@ class SimulatedWorld:
         self.is_clear = np.array([material.is_clear for material in part_materials], np.bool_)
         self._is_shiny = self.materials.shine > 0.0
         stands_out = abs(self.materials.thermal[:, 0] - config.place.surroundings_c) > _STANDS_OUT_K
-        is_person, glows = self._truth_maker.person_of_part != NOBODY, self.materials.colour[:, 6] > 0.0
+        is_person, glows = self._truth_maker.person_of_part != NO_PERSON, self.materials.colour[:, 6] > 0.0
         self._is_mirrored = is_person | stands_out | glows
         self.rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._camera_view)
 

@@ -37,7 +37,7 @@ from peopleboy.scenarios.recording.layout import (
 )
 from peopleboy.scenarios.recording.marks import Arrows, believed_arrows, true_arrows, world_arrows
 from peopleboy.scenarios.recording.rows import METRE_STEP, PIXEL_STEP, TURN_STEP, RecordingWriter, rounded
-from peopleboy.scenarios.recording.solids import NOBODY, body_capsules
+from peopleboy.scenarios.recording.solids import NO_CAPSULES, body_capsules
 from peopleboy.sim.cameras.camera_config import DepthConfig
 from peopleboy.sim.cameras.depth import points_of
 from peopleboy.sim.cameras.kinds import colour_from_thermal, shown_to_people, with_boxes
@@ -243,7 +243,7 @@ class Recorder(RecordingWriter):
         )  # fmt: skip
 
     def _log_person(self, path: str, joints: Matrix | None) -> None:
-        body = NOBODY if joints is None else body_capsules(joints)
+        body = NO_CAPSULES if joints is None else body_capsules(joints)
         self.add(
             f"{path}/body", rr.Capsules3D, translations=rounded(body.start, METRE_STEP),
             quaternions=rounded(body.quaternion, TURN_STEP), lengths=rounded(body.length, METRE_STEP),

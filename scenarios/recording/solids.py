@@ -156,7 +156,7 @@ class Capsules:
     radius: Floats
 
 
-NOBODY: Final = Capsules(np.zeros((0, 3)), np.zeros((0, 4)), np.zeros(0), np.zeros(0))
+NO_CAPSULES: Final = Capsules(np.zeros((0, 3)), np.zeros((0, 4)), np.zeros(0), np.zeros(0))
 
 
 def body_capsules(joints: Floats) -> Capsules:

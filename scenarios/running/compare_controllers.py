@@ -23,7 +23,13 @@ from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run_options import RunOptions
-from peopleboy.scenarios.scores.bootstrap import Interval, PairedDifference, bootstrap, compare_pairs
+from peopleboy.scenarios.scores.bootstrap import (
+    Interval,
+    PairedDifference,
+    bootstrap,
+    compare_pairs,
+    none_for_nan,
+)
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
@@ -236,7 +242,7 @@ def _content(
         "scenario": scenario,
         "controllers": {
             str(controller): {
-                "runs": [{k: _or_none(v) for k, v in figures.items()} for figures in of_one],
+                "runs": [{k: none_for_nan(v) for k, v in figures.items()} for figures in of_one],
                 "mean": {name: interval.to_json() for name, interval in means[controller].items()},
             }
             for controller, of_one in runs.items()
@@ -246,15 +252,11 @@ def _content(
                 "controller": str(controller),
                 "from": str(next(iter(runs))),
                 "mean": {name: one.interval.to_json() for name, one in of_one.items()},
-                "p": {name: _or_none(one.p) for name, one in of_one.items()},
+                "p": {name: none_for_nan(one.p) for name, one in of_one.items()},
             }
             for controller, of_one in paired_differences(runs).items()
         ],
     }
-
-
-def _or_none(value: float) -> float | None:
-    return None if math.isnan(value) else value
 
 
 def _draw(

@@ -28,7 +28,7 @@ class Interval:
 
     def to_json(self) -> list[float | None]:
         """Return mean and bounds, None for undefined ones."""
-        return [None if math.isnan(value) else value for value in (self.mean, self.low, self.high)]
+        return [none_for_nan(value) for value in (self.mean, self.low, self.high)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +42,11 @@ class PairedDifference:
 
     interval: Interval
     p: float
+
+
+def none_for_nan(value: float) -> float | None:
+    """Return a value for JSON, which has no NaN."""
+    return None if math.isnan(value) else value
 
 
 def compare_pairs(differences: Sequence[float]) -> PairedDifference:

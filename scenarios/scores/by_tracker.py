@@ -11,7 +11,7 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.run_folder.finished_run import read_run
-from peopleboy.scenarios.scores.bootstrap import PairedDifference, compare_pairs
+from peopleboy.scenarios.scores.bootstrap import PairedDifference, compare_pairs, none_for_nan
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.evaluate_runs import BoxReference, ScoreOptions, evaluate_runs
 from peopleboy.scenarios.scores.summaries import summarise
@@ -174,7 +174,7 @@ def figures_of_all(groups: Groups, figures: Sequence[Figure] = FIGURES) -> dict[
                     keys[name]: None if math.isnan(apart.interval.mean) else apart.interval.to_json()
                     for name, apart in one.figures.items()
                 },
-                "p": {keys[name]: _or_none(apart.p) for name, apart in one.figures.items()},
+                "p": {keys[name]: none_for_nan(apart.p) for name, apart in one.figures.items()},
             }
             for one in differences(groups, figures)
         ],
@@ -186,15 +186,11 @@ def _together(runs: Sequence[ScoredRun], figures: Sequence[Figure]) -> dict[str,
     over = {one.figure.key: one for one in summarise(scores, figures)}
     return {
         "all_frames": to_json(combine(scores), figures),
-        "mean_of_runs": {name: _or_none(one.mean) for name, one in over.items()},
-        "deviation": {name: _or_none(one.sd) for name, one in over.items()},
+        "mean_of_runs": {name: none_for_nan(one.mean) for name, one in over.items()},
+        "deviation": {name: none_for_nan(one.sd) for name, one in over.items()},
         "interval": {name: one.interval.to_json()[1:] for name, one in over.items()},
         "runs": [_alone(run, figures) for run in runs],
     }
-
-
-def _or_none(value: float) -> float | None:
-    return None if math.isnan(value) else value
 
 
 def _alone(run: ScoredRun, figures: Sequence[Figure]) -> dict[str, Any]:

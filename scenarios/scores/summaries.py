@@ -1,4 +1,4 @@
-"""Summaries of one metric over the runs of a tracker, and differences between trackers."""
+"""Summaries of metrics over the runs of a tracker."""
 
 import math
 from collections.abc import Sequence

@@ -11,7 +11,7 @@ from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix, invert_pose
 from peopleboy.sim.rendering.renderer import Mask, Renderer, Scene
 from peopleboy.sim.rendering.ring import Outline, draw_ring, make_drawing, outline, ring_of
-from peopleboy.sim.rendering.view import NOBODY, Cover, View, count_cover, person_bits
+from peopleboy.sim.rendering.view import NO_PERSON, Cover, View, count_cover, person_bits
 
 _Key = tuple[Panorama, bytes, bytes]
 
@@ -85,7 +85,7 @@ class PanoramicRenderer(Renderer):
         """Return the outlines of a scene, drawn once, and the bits of some parts (P,)."""
         person = scene.person_of_part[parts.argmax()]
         of_one = scene.person_of_part == person
-        if person == NOBODY or (parts & ~of_one).any():
+        if person == NO_PERSON or (parts & ~of_one).any():
             of_one = parts
         key = camera, world_from_camera.tobytes(), of_one.tobytes()
         known = self._outlines.setdefault(scene, {})

@@ -17,7 +17,7 @@ from peopleboy.sim.geometry.vectors import Point, compose, cross, dot, from_each
 from peopleboy.sim.physics.physics_engine import Physics, Rasteriser
 from peopleboy.sim.rendering.raycast import draw
 from peopleboy.sim.rendering.render_canvas import Lens, make_canvas, shade
-from peopleboy.sim.rendering.view import NOBODY, Cover, View, count_cover, person_bits
+from peopleboy.sim.rendering.view import NO_PERSON, Cover, View, count_cover, person_bits
 from peopleboy.sim.shapes.bounds import EMPTY, shape_bounds, unite
 from peopleboy.sim.shapes.shape_table import ShapeTable
 
@@ -93,7 +93,7 @@ def render(scene: "Scene", camera: Pinhole, world_from_camera: Matrix) -> View:
     if scene.renderer == "bullet":
         if not isinstance(scene.physics, Rasteriser):
             raise BadInput("renderer 'bullet' needs physics bullet; choose raycast")
-        people = np.where(hidden, NOBODY, persons)
+        people = np.where(hidden, NO_PERSON, persons)
         removed = hidden & ~scene.physics.hidden_parts()  # the physics world knows all others
         return rasterise(scene.physics, camera, world_from_camera, people, removed)
     raise BadInput(f"unknown renderer {scene.renderer!r}; choose raycast or bullet")
@@ -135,7 +135,7 @@ def rasterise(
     rest = set(names[~removed].tolist()) if removed.any() else None
     part, depth = physics.camera_image(camera, world_from_camera, only=rest)
     cover = np.zeros(part.shape, np.uint64)
-    for person in np.unique(person_of_part[person_of_part != NOBODY]):
+    for person in np.unique(person_of_part[person_of_part != NO_PERSON]):
         alone = set(names[person_of_part == person].tolist())
         silhouette, _ = physics.camera_image(camera, world_from_camera, only=alone)
         cover |= np.where(silhouette >= 0, np.uint64(1) << np.uint64(person), np.uint64(0))
@@ -244,7 +244,7 @@ class Scene:
 
     def only(self, parts: Mask) -> "Scene":
         """Return the scene with only some parts (P,), such as those of one person."""
-        return replace(self, person_of_part=np.where(parts, 0, NOBODY), hidden=~parts)
+        return replace(self, person_of_part=np.where(parts, 0, NO_PERSON), hidden=~parts)
 
 
 class Renderer(ABC):

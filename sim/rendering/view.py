@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-NOBODY = -1
+NO_PERSON = -1
 BLIND = "none"  # in place of a renderer's name: a world without images
 
 
@@ -33,7 +33,7 @@ class View:
 def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:
     """Return (P,) the bit of the person to which a part belongs, 0 for none."""
     bits = np.uint64(1) << np.maximum(person_of_part, 0).astype(np.uint64)
-    return np.where(person_of_part == NOBODY, np.uint64(0), bits)
+    return np.where(person_of_part == NO_PERSON, np.uint64(0), bits)
 
 
 # Occlusion counts of a view (a numba kernel).

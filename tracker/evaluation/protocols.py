@@ -49,14 +49,14 @@ class Rules:
     """The rules of a protocol.
 
     Attributes:
-        has_classes: whether other classes than people are told apart.
+        has_classes: whether the file distinguishes other classes than people.
         ignored: classes of which a matched candidate is left out.
         regions: classes that mark regions, in which candidates that match nothing are left out.
         is_flag_ignored: whether a candidate that matches a row of flag 0 is left out; otherwise it stays.
         has_objects: whether rows of no interest are matched as well, so that they can take a candidate.
         least_height_px: candidates up to this height that match nothing are left out.
         min_visible: people with at most this visible fraction are ignored; None to score all.
-        gate: IoU above which a candidate matches somebody who is ignored.
+        gate: IoU above which a candidate matches a person who is ignored.
     """
 
     has_classes: bool = True
@@ -82,7 +82,7 @@ RULES: Final = {
 }
 
 
-def nobody() -> TrueBoxes:
+def no_people() -> TrueBoxes:
     """Return ground truth without a box."""
     return TrueBoxes.from_rows([])
 
@@ -98,8 +98,8 @@ class Surroundings:
         gate: IoU above which a candidate matches a person or an object.
     """
 
-    objects: TrueBoxes = field(default_factory=nobody)
-    regions: TrueBoxes = field(default_factory=nobody)
+    objects: TrueBoxes = field(default_factory=no_people)
+    regions: TrueBoxes = field(default_factory=no_people)
     least_height_px: float = 0.0
     gate: float = MORE_THAN_HALF
 
@@ -132,9 +132,9 @@ def recount(truth: TrueBoxes, protocol: Protocol) -> tuple[TrueBoxes, Surroundin
     """Score the people of a rendered run by a protocol, which may treat those who do not count as objects."""
     rules = RULES[protocol]
     if rules.is_flag_ignored:
-        return truth, _around(rules, nobody(), nobody())
-    others = truth.take(~truth.counted) if rules.has_objects else nobody()
-    return truth.take(truth.counted), _around(rules, others, nobody())
+        return truth, _around(rules, no_people(), no_people())
+    others = truth.take(~truth.counted) if rules.has_objects else no_people()
+    return truth.take(truth.counted), _around(rules, others, no_people())
 
 
 def _around(rules: Rules, objects: TrueBoxes, regions: TrueBoxes) -> Surroundings:

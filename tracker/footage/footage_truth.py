@@ -256,7 +256,7 @@ def load_truth(
 def _of_everybody(
     path: Path, frames: int | None, numbers: range | None, asked: Protocol | None, tracks: Path | None
 ) -> GivenTruth:
-    """Read the truth of all people; nobody ever visible means that it is missing, but in runs of ours."""
+    """Read the truth of all people. If none is ever visible, fractions are missing, except in our runs."""
     stated = asked or _protocol_of_run(path.parent.parent)
     named = stated or _named(path, tracks)
     rows, of_format, is_per_cent = read_annotations(path, named)
@@ -264,7 +264,7 @@ def _of_everybody(
     if is_per_cent:
         notes.append(f"{path}: the visible fraction is taken for per cent")
     if not len(rows) and not is_own:
-        notes.append(f"{path}: it is empty, which says that nobody is there")
+        notes.append(f"{path}: it is empty: no person is visible in any frame")
     rows[:, 0] -= frames_before(rows[:, 0], numbers, path, notes)
     if len(rows) and not rows[:, VISIBLE].any() and not is_own:
         rows[:, VISIBLE] = 1.0

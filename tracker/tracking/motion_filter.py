@@ -54,7 +54,7 @@ class StateEstimates:
         return StateEstimates(mean, covariance)
 
 
-NOBODY = StateEstimates(np.empty((0, STATE)), np.empty((0, STATE, STATE)))
+NO_STATES = StateEstimates(np.empty((0, STATE)), np.empty((0, STATE, STATE)))
 
 
 class Linearised(NamedTuple):

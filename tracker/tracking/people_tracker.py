@@ -23,7 +23,7 @@ from peopleboy.tracker.tracking.association import (
 )
 from peopleboy.tracker.tracking.config import PeopleTrackerConfig, ReidentificationConfig
 from peopleboy.tracker.tracking.motion_filter import (
-    NOBODY,
+    NO_STATES,
     Floats,
     StateEstimates,
     floor_positions,
@@ -76,8 +76,8 @@ class PeopleTracker:
         self._config = PeopleTrackerConfig() if config is None else config
         self._introduced: Box | None = None
         self._targets: list[TrackState] = []
-        self._states = NOBODY
-        self._last_seen = NOBODY  # the state of each track when it was last detected
+        self._states = NO_STATES
+        self._last_seen = NO_STATES  # the state of each track when it was last detected
         self._last_s: float | None = None
         self._sensed_s: dict[str, float] = {}
         self._settings: Settings | None = None

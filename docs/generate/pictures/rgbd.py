@@ -29,7 +29,7 @@ FOUND, LINE = "#1b9e77", "#d95f02"
 
 def steps() -> Figure:
     """Draw colour with tracks, depth with detections, the v-disparity image, and the plan view."""
-    frame, view, tracks, told = _watch()
+    frame, view, tracks, explanation = _watch()
     figure = Figure(figsize=(7.6, 5.9), layout="constrained")
     (colour, depth), (rows, above) = figure.subplots(2, 2)
     show(colour, frame.rgb(DEPTH_COLOUR))
@@ -38,10 +38,10 @@ def steps() -> Figure:
         _draw(colour, track.boxes[DEPTH], tuple(c / 255 for c in track_colour(track.id)), str(track.id))
     show(depth, show_depth(frame.depth(DEPTH)))
     depth.set_title("human size; solid: verified", fontsize=9)
-    for one, score in _detected(told):
+    for one, score in _detected(explanation):
         _draw(depth, one.box, FOUND, "", dashed=score <= 0.0)
-    _draw_rows(rows, frame, view, told)
-    _draw_above(above, view, told)
+    _draw_rows(rows, frame, view, explanation)
+    _draw_above(above, view, explanation)
     return figure
 
 
@@ -55,14 +55,14 @@ def _watch() -> tuple[Frame, DepthView, tuple[Track, ...], DepthExplanation]:
         tracks = tracker.update(frame)
         if observation.time_s >= AT_S:
             break
-    told = explanation_of(tracker)
-    assert isinstance(told, DepthExplanation)
-    return frame, DepthView.of(calibrations[DEPTH], DEPTH), tracks, told
+    explanation = explanation_of(tracker)
+    assert isinstance(explanation, DepthExplanation)
+    return frame, DepthView.of(calibrations[DEPTH], DEPTH), tracks, explanation
 
 
-def _detected(told: DepthExplanation) -> list[tuple[PreDetection, float]]:
+def _detected(explanation: DepthExplanation) -> list[tuple[PreDetection, float]]:
     """Return the objects of human size, with their log-odds of being people."""
-    return list(zip(told.layout.detections, told.scores.tolist(), strict=False))
+    return list(zip(explanation.layout.detections, explanation.scores.tolist(), strict=False))
 
 
 def _draw(axes: Axes, box: tuple[float, ...], colour: object, text: str, *, dashed: bool = False) -> None:
@@ -72,7 +72,7 @@ def _draw(axes: Axes, box: tuple[float, ...], colour: object, text: str, *, dash
     axes.text(left, top - 6, text, color=colour, fontsize=8, clip_on=True)
 
 
-def _draw_rows(axes: Axes, frame: Frame, view: DepthView, told: DepthExplanation) -> None:
+def _draw_rows(axes: Axes, frame: Frame, view: DepthView, explanation: DepthExplanation) -> None:
     """Draw rows over disparity: the floor is a falling line, the ceiling rises, people are vertical."""
     counts = v_disparity(frame.depth(DEPTH), view)
     last = int(view.disparity_px_m / NEAREST_M / BIN_PX)
@@ -80,23 +80,23 @@ def _draw_rows(axes: Axes, frame: Frame, view: DepthView, told: DepthExplanation
         np.log1p(counts[:, :last]), cmap="gray_r", aspect="auto", extent=(0, last * BIN_PX, 479.5, -0.5)
     )
     depth_m = np.linspace(NEAREST_M, FARTHEST_M, 200)
-    for line in (told.layout.floor, told.layout.ceiling):
+    for line in (explanation.layout.floor, explanation.layout.ceiling):
         if isinstance(line, HeightLine):
             axes.plot(view.disparity_px_m / depth_m, line.rows(depth_m, view), color=LINE, lw=1.2)
     axes.set(xlim=(0, last * BIN_PX), ylim=(479.5, -0.5), xlabel="disparity (px)", ylabel="row")
     axes.set_title("v-disparity: floor and ceiling", fontsize=9)
 
 
-def _draw_above(axes: Axes, view: DepthView, told: DepthExplanation) -> None:
+def _draw_above(axes: Axes, view: DepthView, explanation: DepthExplanation) -> None:
     """Draw columns over depth, between floor, ceiling and walls, which are lines in disparity."""
-    counts = told.layout.counts
+    counts = explanation.layout.counts
     depth_m = depths_m(FARTHEST_M / (len(counts) - 1))
     extent = (-0.5, counts.shape[1] - 0.5, 0.0, float(depth_m[-1]))
     axes.imshow(np.log1p(counts), cmap="gray_r", aspect="auto", origin="lower", extent=extent)
-    for wall in told.layout.walls:
+    for wall in explanation.layout.walls:
         columns = np.arange(wall.left, wall.right + 1.0)
         axes.plot(columns, wall.depth_m(columns, view), color=LINE, lw=1.2)
-    for one, score in _detected(told):
+    for one, score in _detected(explanation):
         left, _, width, _ = one.box
         low = one.z_m - one.depth_m / 2.0
         _draw_flat(axes, (left, low, width, one.depth_m), dashed=score <= 0.0)

@@ -37,7 +37,7 @@ class Present(NamedTuple):
     motion: Array
 
 
-NOBODY: Final = Present({}, np.empty((0, 4)))
+NO_WALKERS: Final = Present({}, np.empty((0, 4)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +66,7 @@ class Surroundings:
         return None if row is None else self.people.motion[row, :2]
 
 
-ALONE: Final = Surroundings(people=NOBODY, walker=-1, robot=None, walls=np.empty((0, 4)))
+ALONE: Final = Surroundings(people=NO_WALKERS, walker=-1, robot=None, walls=np.empty((0, 4)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

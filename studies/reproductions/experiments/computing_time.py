@@ -135,7 +135,7 @@ def time_attention(setting: TrackerSetting, steps: int) -> Milliseconds:
         "learning": lambda: learn(sight, box, config),
         "search": lambda: search(sight, look, config),
         "ratio of colours alone": lambda: search(ImageSums.of(image, alone), colours, alone),
-        "somebody's colours": lambda: ByColour().see(view),
+        "colour descriptor": lambda: ByColour().see(view),
     }
     return {name: milliseconds(work, steps) for name, work in works.items()}
 

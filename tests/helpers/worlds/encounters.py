@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.people.walking.walker import NOBODY
+from peopleboy.sim.people.walking.walker import NO_WALKERS
 from tests.helpers.worlds.walkers import NO_WALLS
 
 Array = NDArray[np.float64]
@@ -59,7 +59,7 @@ def meet(person: Person, way: Callable[[float], Array], seconds: float, walls: A
         if np.hypot(*velocity) > 1e-6:
             heading = float(np.arctan2(velocity[1], velocity[0]))
         state = PlanarState(position=place, velocity=velocity, radius_m=0.355, heading_rad=heading)
-        person.step(time_s, 1.0 / RATE_HZ, NOBODY, state, walls)
+        person.step(time_s, 1.0 / RATE_HZ, NO_WALKERS, state, walls)
         gaze = gaze_of(person)
         x, y = place - person.position
         rows.append(

@@ -5,7 +5,7 @@ import numpy as np
 from peopleboy.sim.people.crowd import those_present
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.people.walking.walker import NOBODY
+from peopleboy.sim.people.walking.walker import NO_WALKERS
 
 NO_WALLS = np.empty((0, 4))
 
@@ -19,7 +19,7 @@ def make_person(seed=0, **settings):
 def walk(person, seconds, dt=1 / 60, start=0.0, robot=None, walls=NO_WALLS):
     """Step one person alone; yields the time after each step."""
     for k in range(round(seconds / dt)):
-        person.step(start + k * dt, dt, NOBODY, robot, walls)
+        person.step(start + k * dt, dt, NO_WALKERS, robot, walls)
         yield start + (k + 1) * dt
 
 

@@ -124,7 +124,7 @@ def test_an_empty_file_says_that_nobody_is_there_and_that_is_told(tmp_path):
     (tmp_path / "theirs.txt").write_text("")
     given = load_truth(tmp_path / "theirs.txt", 12)
     assert len(given.truth.frame) == 0
-    assert given.notes == (f"{tmp_path / 'theirs.txt'}: it is empty, which says that nobody is there",)
+    assert given.notes == (f"{tmp_path / 'theirs.txt'}: it is empty: no person is visible in any frame",)
 
 
 WIDTH, HEIGHT = 160, 120

@@ -9,7 +9,7 @@ from peopleboy.tracker.scene_model.layers import Layers
 from peopleboy.tracker.scene_model.readings import Readings
 
 SIZE = (12, 16)
-NOBODY = np.zeros(SIZE, np.bool_)
+NO_PEOPLE = np.zeros(SIZE, np.bool_)
 REACH = np.full(SIZE, 0.05, np.float32)
 
 
@@ -18,7 +18,7 @@ def readings(depth_m: float | np.ndarray) -> Readings:
     return Readings(image, image, np.zeros(SIZE, np.bool_), np.full(SIZE, 1e-3, np.float32), 1)
 
 
-def see(layers: Layers, depths_m: list[float], start: int = 0, ignored: np.ndarray = NOBODY) -> None:
+def see(layers: Layers, depths_m: list[float], start: int = 0, ignored: np.ndarray = NO_PEOPLE) -> None:
     for k, depth in enumerate(depths_m, start):
         layers.take_in(readings(depth), REACH, ignored, k / 15.0, 5)
 
@@ -62,7 +62,7 @@ def test_what_is_nearer_is_a_thing_since_its_first_reading_and_hides_the_backgro
 def test_a_thing_is_remembered_behind_people_and_gone_when_the_background_is_seen() -> None:
     layers = Layers(*SIZE)
     see(layers, [4.0] * 30 + [3.0] * 30)
-    see(layers, [2.0] * 30, start=60, ignored=~NOBODY)
+    see(layers, [2.0] * 30, start=60, ignored=~NO_PEOPLE)
     assert layers.is_covered.all()
     see(layers, [4.0] * 5, start=90)
     assert not layers.is_covered.any()

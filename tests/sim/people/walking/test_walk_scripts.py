@@ -10,7 +10,7 @@ from peopleboy.sim.people.person_config import Reaction, Waypoint
 from peopleboy.sim.people.walking.script import WALK, is_scripted, join_records, join_scripts
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.walk_kernels import _hypot, walk_on
-from peopleboy.sim.people.walking.walker import NOBODY
+from peopleboy.sim.people.walking.walker import NO_WALKERS
 from tests.helpers.worlds.walkers import NO_WALLS, make_person
 
 DT_S = 1 / 15
@@ -59,7 +59,7 @@ def test_people_walk_together_to_the_last_bit_as_each_alone_with_a_robot_in_thei
         place = (2.0 * math.sin(0.02 * k), 1.5 * math.cos(0.013 * k))
         robot = PlanarState(position=np.array(place), velocity=np.zeros(2), radius_m=0.355)
         for person in people:
-            person.step(k * DT_S, DT_S, NOBODY, robot, NO_WALLS)
+            person.step(k * DT_S, DT_S, NO_WALKERS, robot, NO_WALLS)
         motion = (*place, 0.0, 0.0, 0.355)
         walk_on(0, len(people), walks, scripts, k * DT_S, DT_S, motion, NO_WALLS, 2.0)
         assert_walk_alike(people, walks)
