@@ -339,6 +339,7 @@ class TableFile:
             self._writer = pq.ParquetWriter(str(self._part.absolute()), self._schema, filesystem=LOCAL)
         self._writer.write_table(pa.concat_tables(self._blocks).combine_chunks())
         self._blocks = []
+        pa.default_memory_pool().release_unused()  # 100 MB, which pyarrow would keep for minutes
 
 
 class RunTables:
