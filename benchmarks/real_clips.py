@@ -159,7 +159,7 @@ def make_clip_tracker(name: str, seed: int) -> Contestant:
     """
     if name in PEERS:
         return _peer(name)
-    ours = Ours(name, seed, boxes_whole=not is_own(name))
+    ours = Ours.named(name, seed, boxes_whole=not is_own(name))
     for camera in ours.cameras:
         if camera not in ThermalViews.cameras:
             raise BadInput(f"--tracker {name}: needs camera {camera!r}, which clips do not have")

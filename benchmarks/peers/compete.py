@@ -11,7 +11,7 @@ import numpy as np
 
 import benchmarks.peers
 from benchmarks.compare import timed_ms
-from benchmarks.peers.contestants import JOINT, PEERS, RATE_HZ, make_contestant
+from benchmarks.peers.contestants import BOUNDS, JOINT, PEERS, RATE_HZ, make_contestant
 from peopleboy import tracker
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.run_files import occluded_shares
@@ -116,7 +116,7 @@ def _digest(name: str) -> str:
     if name in PEERS:
         digest.update(version("trackers").encode())
     packages = [tracker] if name not in PEERS else []
-    packages += [benchmarks.peers] if name in (*PEERS, JOINT) else []
+    packages += [benchmarks.peers] if name in (*PEERS, *BOUNDS, JOINT) else []
     for package in packages:
         for path in sorted(Path(package.__path__[0]).rglob("*.py")):
             digest.update(path.read_bytes())

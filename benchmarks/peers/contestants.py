@@ -10,7 +10,7 @@ from trackers import ByteTrackTracker, SORTTracker
 from benchmarks.peers.classic import DetectAndFilter
 from benchmarks.peers.detectors import Blobs, Boxes, Hog, Oracle, PeerDetections
 from benchmarks.peers.joint_filter import JointFilter
-from benchmarks.peers.ours import Contestant, Ours
+from benchmarks.peers.ours import Contestant, Ours, WithTrueIds, on_true_boxes
 from peopleboy.random_streams import stream
 from peopleboy.tracker.boxes import within_image
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
@@ -81,13 +81,19 @@ PEERS: dict[str, Callable[[TrueBoxes], Contestant]] = {
 }
 """Factory of each peer by name; only the oracle uses the ground truth."""
 
+BOUNDS: dict[str, Callable[[TrueBoxes], Contestant]] = {
+    f"oracle+{DEFAULT_TRACKER}": on_true_boxes,
+    f"{DEFAULT_TRACKER}+oracle": lambda truth: WithTrueIds(Ours.named(DEFAULT_TRACKER, 0), truth),
+}
+"""Factory of the default tracker with true boxes, and with true ids."""
+
 JOINT = "thermal+mcmc"
 """Name of the literal tracker's contour in one joint filter for all people."""
 
 
 def contestants() -> list[str]:
     """Return the names of all trackers that can be compared."""
-    return [*VARIANTS, DEFAULT_TRACKER, *PEERS, JOINT]
+    return [*VARIANTS, DEFAULT_TRACKER, *PEERS, *BOUNDS, JOINT]
 
 
 def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:
@@ -98,7 +104,8 @@ def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:
     """
     if name == JOINT:
         return JointFilter(stream(seed, "peers.joint"))
-    return PEERS[name](truth) if name in PEERS else Ours(name, seed)
+    factories = PEERS | BOUNDS
+    return factories[name](truth) if name in factories else Ours.named(name, seed)
 
 
 class PeerOfClips(DetectAndAssociate):

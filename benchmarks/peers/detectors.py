@@ -105,6 +105,10 @@ class Oracle:
 
     def detect(self, frame: Frame) -> PeerDetections:  # noqa: ARG002
         """Find people in the next frame."""
+        return self.detect_next()
+
+    def detect_next(self) -> PeerDetections:
+        """Find people in the next frame, of which no image is needed."""
         self._frame += 1
         rows = self._truth.frame == self._frame
         return PeerDetections(self._truth.box[rows], np.ones(int(rows.sum())))
