@@ -10,6 +10,7 @@ from benchmarks.peers.classic import DetectAndFilter
 from benchmarks.peers.compete import SequenceTask
 from benchmarks.peers.detectors import Blobs, Boxes, Oracle, PeerDetections, _from_colour
 from benchmarks.peers.joint_filter import run_chain
+from benchmarks.peers.ours import WithTrueIds, on_true_boxes
 from benchmarks.peers.show import write_results
 from benchmarks.results import read_tables, take_in
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
@@ -30,6 +31,45 @@ def test_blobs_find_a_warm_upright_region_and_leave_a_flat_one() -> None:
     image[20:30, 200:300] = 255
     found = Blobs().detect(frame(image))
     assert found.box == pytest.approx(np.array([[115.0 - 13.5, 60.0, 27.0, 100.0]]))
+
+
+class TwoBoxes:
+    """A tracker that outputs one box near a person and one far away, with new ids in each frame."""
+
+    def __init__(self) -> None:
+        self._number = 0
+
+    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
+        self._number += 2
+        return np.array([[1.0, 0, 10, 30], [200.0, 0, 10, 30]]), [self._number, self._number + 1]
+
+
+def test_true_ids_are_given_to_boxes_on_people_and_to_no_others() -> None:
+    truth = TrueBoxes(
+        frame=np.array([1, 2, 2]),
+        id=np.array([7, 7, 9]),
+        box=np.array([[0.0, 0, 10, 30], [2.0, 0, 10, 30], [100.0, 0, 10, 30]]),
+        counted=np.ones(3, dtype=np.bool_),
+        visible=np.ones(3),
+    )
+    tracker = WithTrueIds(TwoBoxes(), truth)
+    ids = [tracker.step(frame(np.zeros((1, 1), np.uint8)))[1] for _ in range(2)]
+    assert [each[0] for each in ids] == [7, 7]
+    assert not {each[1] for each in ids} & {7, 9}
+
+
+def test_the_default_tracker_follows_true_boxes() -> None:
+    numbers = np.arange(1, 31)
+    box = np.stack([100.0 + numbers, np.full(30, 60.0), np.full(30, 30.0), np.full(30, 90.0)], axis=1)
+    truth = TrueBoxes(
+        frame=numbers, id=np.ones(30, int), box=box, counted=np.ones(30, np.bool_), visible=np.ones(30)
+    )
+    tracker = on_true_boxes(truth)
+    image = np.zeros((240, 320), np.uint8)
+    for number in numbers:
+        boxes, ids = tracker.step(Frame(images={THERMAL: image}, time_s=number / 15.0))
+    assert boxes == pytest.approx(box[-1:], abs=2.0)
+    assert ids == [1]
 
 
 def test_the_oracle_gives_each_frame_who_is_seen_well_enough() -> None:
