@@ -39,7 +39,7 @@ class TwoBoxes:
     def __init__(self) -> None:
         self._number = 0
 
-    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
+    def step(self, frame: Frame) -> tuple[Boxes, list[int]]:  # noqa: ARG002
         self._number += 2
         return np.array([[1.0, 0, 10, 30], [200.0, 0, 10, 30]]), [self._number, self._number + 1]
 
