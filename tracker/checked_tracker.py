@@ -14,6 +14,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.own_code import blamed
 from peopleboy.tracker.evaluation.latency import TimedImages
 from peopleboy.tracker.evaluation.sequence import FARTHEST, LARGEST
+from peopleboy.tracker.footage.box_kinds import BoxKind, boxed_whole
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
@@ -26,14 +27,18 @@ class CheckedTracker:
         tracker: the wrapped tracker.
         who: name for messages, such as "tracker 'my_module:MyTracker'".
         cameras: names of the available cameras.
+        boxes: what returned boxes enclose; None for the tracker's own boxes, unchanged.
 
     Attributes:
         times_ms: wall time of each update [ms], without the rendering of images.
     """
 
-    def __init__(self, tracker: Tracker, who: str, cameras: Collection[str]) -> None:
+    def __init__(
+        self, tracker: Tracker, who: str, cameras: Collection[str], boxes: BoxKind | None = None
+    ) -> None:
         self._tracker = tracker
         self._who = who
+        self._boxes = boxes
         self._known = frozenset(cameras)
         self.times_ms = array("d")
 
@@ -67,7 +72,7 @@ class CheckedTracker:
             self.times_ms.append(1000.0 * (perf_counter() - start_s - images.spent_s))
             for fault in _faults(tracks, self._known):
                 raise BadInput(fault)
-            return tracks
+        return boxed_whole(tracks, frame) if self._boxes is BoxKind.WHOLE else tracks
 
 
 def _faults(tracks: object, cameras: Collection[str]) -> Iterator[str]:

@@ -74,6 +74,11 @@ WITH_DETECTOR: Final = (DETECTION_TRACKER, "handover", "fused", "attentive")
 """Trackers that can use a user's detector in place of the learned one; it is their second argument."""
 
 
+def uses_contrast(name: str) -> bool:
+    """Return whether the tracker of this name uses only the contrast of a thermal image."""
+    return split_name(name)[0] in BY_CONTRAST
+
+
 def explanation_of(tracker: Tracker) -> object:
     """Return a tracker's `explanation`, the state behind its tracks; None if it has none.
 

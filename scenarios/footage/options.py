@@ -15,7 +15,7 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.evaluation.protocols import Protocol
 from peopleboy.tracker.footage.box_kinds import BoxKind
-from peopleboy.tracker.footage.grey import LEAST_SIDE_PX, Radiometry
+from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.tracker_names import is_detection_file, shown_name, split_name
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
@@ -211,18 +211,14 @@ def parse_start(text: str) -> Box | str:
     return x, y, width, height
 
 
-def check_first(picture: NDArray[Any], options: TrackOptions) -> None:
-    """Check the first image (H, W) or (H, W, 3) of footage.
+def check_start(picture: NDArray[Any], options: TrackOptions) -> None:
+    """Check the initial box against the first image (H, W) or (H, W, 3).
 
     Raises:
-        BadInput: the image is too small, or the initial box is not inside it.
+        BadInput: the box is not inside it.
     """
-    height, width = picture.shape[:2]
-    if min(height, width) < LEAST_SIDE_PX:
-        least = f"{LEAST_SIDE_PX}x{LEAST_SIDE_PX}"
-        raise BadInput(f"{options.footage}: images must be at least {least}, got {width}x{height}")
     if options.start is not None and not isinstance(options.start, str):
-        _check_inside(options.start, width, height)
+        _check_inside(options.start, picture.shape[1], picture.shape[0])
 
 
 def _check_inside(box: Box, width: int, height: int) -> None:

@@ -16,7 +16,7 @@ from peopleboy.scenarios.run_folder.run_files import check_detections
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.latency import write_latency
-from peopleboy.tracker.footage.box_kinds import BoxKind, boxed_whole, torso_of
+from peopleboy.tracker.footage.box_kinds import BoxKind, torso_of
 from peopleboy.tracker.footage.footage_truth import GivenTruth, doubts, find_truth, load_truth
 from peopleboy.tracker.frame import DEPTH, THERMAL
 from peopleboy.tracker.reproductions.contour.variants import VARIANTS
@@ -62,7 +62,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
     truth = _truth_of(options, views)
     kind = _kind_of(options, truth)
     tracker = CheckedTracker(
-        _tracker_of(options, views, truth, kind), f"tracker {options.shown_tracker!r}", views.cameras
+        _tracker_of(options, views, truth, kind), f"tracker {options.shown_tracker!r}", views.cameras, kind
     )
     if views.is_exact:
         check_detections(options.tracker, views.expected)
@@ -79,7 +79,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
                 with at_frame(log.frames + 1):
                     tracks = tracker.update(frame)
                     explanation = explanation_of(tracker)
-                log.add(frame, boxed_whole(tracks, frame) if kind is BoxKind.WHOLE else tracks, explanation)
+                log.add(frame, tracks, explanation)
                 times.append(time.perf_counter())
                 report(log.frames, views.expected)
         scores = log.finish()

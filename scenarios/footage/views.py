@@ -15,19 +15,19 @@ from peopleboy.scenarios.footage.options import (
     DEFAULT_RATE_HZ,
     RgbdOptions,
     TrackOptions,
-    check_first,
+    check_start,
     colour_picture,
 )
 from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
-from peopleboy.tracker.footage.grey import Radiometry, are_bytes_swapped, check_plausible, grey_maker
+from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.footage.image_sequences import Footage, PictureFolder, folders_in, open_footage
 from peopleboy.tracker.footage.picture_names import offsets_of, pictures_in
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
 from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, rate_in
+from peopleboy.tracker.footage.thermal_images import ThermalImages, check_image
 from peopleboy.tracker.footage.time_stamps import read_time_stamps, time_stamps
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
-from peopleboy.tracker.tracker_names import split_name
-from peopleboy.tracker.trackers import BY_CONTRAST
+from peopleboy.tracker.trackers import uses_contrast
 
 _COLOUR_FOLDERS: Final = ("rgb", "color")
 """Where RGB-D benchmarks keep the colour images beside the depth images."""
@@ -66,7 +66,7 @@ class RgbdViews:
         if rgbd.odometry is not None:
             self._odometry = load_odometry(rgbd.odometry, self.expected)
         first = read_picture(self._pairs.colour[0], [])
-        check_first(first, options)
+        check_image(first, str(options.footage))
         self._geometry = rgbd.camera.geometry(first.shape[1], first.shape[0])
 
     def __iter__(self) -> Iterator[Frame]:
@@ -202,6 +202,9 @@ class ThermalViews:
         if options.tracker == COLOUR_TRACKER and options.colour is None:
             raise BadInput("--tracker colour: needs --colour FOLDER; add it, or give --tracker thermal")
         self._options = options
+        self._images = ThermalImages(
+            options.radiometry, by_contrast=uses_contrast(options.tracker), where=str(options.footage)
+        )
         self._footage = open_footage(options.footage)
         self._colour = None if options.colour is None else open_footage(options.colour)
         self._pair_up()
@@ -249,7 +252,8 @@ class ThermalViews:
     @property
     def notes(self) -> list[str]:
         """Notes on the interpretation of the inputs."""
-        return [*self._footage.notes, *([] if self._colour is None else self._colour.notes)]
+        colour = [] if self._colour is None else self._colour.notes
+        return [*self._footage.notes, *self._images.notes, *colour]
 
     def __iter__(self) -> Iterator[Frame]:
         """Yield frames with thermal images, and with colour images if there are any.
@@ -257,25 +261,11 @@ class ThermalViews:
         Raises:
             BadInput: an image is unusable, or the numbers of thermal and colour images differ.
         """
-        options, radiometry, notes = self._options, self._options.radiometry, self._footage.notes
-        to_grey = None
         for number, (thermal, picture) in enumerate(self._pictures()):
             if number == 0:
-                check_first(thermal, options)
-                self._note_counts(thermal)
-            values = radiometry.values(thermal, notes)
-            if number == 0:
-                check_plausible(radiometry, values)
-            if to_grey is None:
-                to_grey = grey_maker(
-                    radiometry,
-                    is_grey=thermal.dtype == np.uint8,
-                    by_contrast=split_name(options.tracker)[0] in BY_CONTRAST,
-                )
-            images: dict[str, NDArray[np.uint8]] = {THERMAL: to_grey(values)}
-            if picture is not None:
-                images[COLOUR] = colour_picture(picture, "--colour")
-            yield Frame(images=images, time_s=self._time_s(number))
+                check_start(thermal, self._options)
+            colour = None if picture is None else colour_picture(picture, "--colour")
+            yield self._images.frame(thermal, self._time_s(number), colour)
 
     def _pictures(self) -> Iterator[tuple[NDArray[Any], NDArray[Any] | None]]:
         here, there = self._options.footage, self._options.colour
@@ -287,18 +277,6 @@ class ThermalViews:
                     f"{shorter}: ends after {number} images, before {longer}; both need the same number"
                 )
             yield thermal, picture
-
-    def _note_counts(self, thermal: NDArray[Any]) -> None:
-        if are_bytes_swapped(thermal):
-            self._footage.notes.append(
-                "the two bytes of each 16-bit count seem to be exchanged, as in PNG files of some cameras; "
-                "exchange them before, for example by numpy.ndarray.byteswap"
-            )
-        if thermal.dtype != np.uint8 and not self._options.radiometry.is_known:
-            self._footage.notes.append(
-                f"{thermal.dtype} images without --scale: temperatures are unknown, "
-                "grey levels are stretched to the contrast of the scene"
-            )
 
     def picture(self, frame: Frame) -> Picture:
         """Return the grey image of a frame."""

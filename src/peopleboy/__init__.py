@@ -40,8 +40,10 @@ if TYPE_CHECKING:
     from peopleboy.tracker.evaluation.evaluate import evaluate
     from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
     from peopleboy.tracker.footage.box_kinds import BoxKind as BoxKind
+    from peopleboy.tracker.footage.grey import Radiometry as Radiometry
     from peopleboy.tracker.frame import Frame
     from peopleboy.tracker.frame import Odometry as Odometry
+    from peopleboy.tracker.image_tracker import ImageTracker
     from peopleboy.tracker.track import FloorPlace as FloorPlace
     from peopleboy.tracker.track import Status as Status
     from peopleboy.tracker.track import Track
@@ -57,12 +59,14 @@ _HOMES: Final = {
     "Film": "scenarios.running.frame_cache",
     "FloorPlace": "tracker.track",
     "Frame": "tracker.frame",
+    "ImageTracker": "tracker.image_tracker",
     "Observation": "sim.observation",
     "Odometry": "tracker.frame",
     "PeopleBoyEnv": "scenarios.environments.environment",
     "Percept": "behaviours.percept",
     "PersonTruth": "sim.truth.truth",
     "PinholeCalibration": "geometry.camera_calibration",
+    "Radiometry": "tracker.footage.grey",
     "RunOptions": "scenarios.running.run_options",
     "RunScores": "scenarios.scores.run_scores",
     "Scenario": "scenarios.files.scenario",
@@ -90,6 +94,7 @@ _HOMES: Final = {
 __all__ = [
     "BadInput",
     "Frame",
+    "ImageTracker",
     "RunOptions",
     "Track",
     "TrackBoxes",
