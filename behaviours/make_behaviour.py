@@ -1,6 +1,7 @@
 """Registry of behaviours; each is wrapped by the safety guard, which limits its commands by the sonars."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from peopleboy.bad_input import BadInput
@@ -81,6 +82,16 @@ def _patrol(settings: BehaviourSettings) -> "Behaviour":
     return Patrol(FollowCorridor(settings.corridor), settings.follow)
 
 
+@BEHAVIOURS.register(
+    "go_to",
+    summary="drives to `goal_m`, around obstacles and people that it detects on the way",
+)
+def _go_to(settings: BehaviourSettings) -> "Behaviour":  # noqa: ARG001
+    from peopleboy.behaviours.go_to import GoTo
+
+    return GoTo()
+
+
 @BEHAVIOURS.register(SCRIPTED, summary="drives according to `commands`")
 def _scripted(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.scripted import Scripted
@@ -99,6 +110,7 @@ def make_behaviour(
     script: "Sequence[tuple[float, Command]]" = (),
     follow: "FollowConfig | None" = None,
     corridor: "FollowCorridorConfig | None" = None,
+    goal_m: "tuple[float, float] | None" = None,
     safety: "SafetyConfig | None" = None,
 ) -> "Guarded":
     """Make a behaviour by its name, limited by the safety guard.
@@ -108,6 +120,7 @@ def make_behaviour(
         script: for "scripted", pairs of a start time [s] and a command.
         follow: for "follow_person", its gains and limits.
         corridor: for "follow_corridor", its sensor, gains and limits.
+        goal_m: [m] x, y of the robot's goal in the place; behaviours get it in `Percept.goal_m`.
         safety: the robot's limits and outline.
 
     Raises:
@@ -116,14 +129,15 @@ def make_behaviour(
     from peopleboy.behaviours.behaviour import checked_behaviour
     from peopleboy.behaviours.safety_guard import Guarded
 
+    guarded_by = partial(Guarded, config=safety, goal_m=goal_m)
     if ":" in name:
         own = load_own("behaviour", name, _CALL)()
-        return Guarded(checked_behaviour(own, f"behaviour {name!r}"), safety)
+        return guarded_by(checked_behaviour(own, f"behaviour {name!r}"))
     if name not in BEHAVIOURS:
         known = ", ".join(sorted(BEHAVIOURS))
         raise BadInput(f"unknown behaviour {name!r}; choose from {known}, or your own as module:Class")
     if is_own(name):
         made = guarded("behaviour", name, _CALL, BEHAVIOURS[name])()
-        return Guarded(checked_behaviour(made, f"behaviour {name!r}"), safety)
+        return guarded_by(checked_behaviour(made, f"behaviour {name!r}"))
     settings = BehaviourSettings(script=script, follow=follow, corridor=corridor)
-    return Guarded(BEHAVIOURS[name](settings), safety)
+    return guarded_by(BEHAVIOURS[name](settings))

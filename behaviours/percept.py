@@ -1,4 +1,4 @@
-"""Input of a behaviour at one instant: people in the image, sonar ranges, wheel speeds."""
+"""Input of a behaviour at one instant: people in the image, sonar ranges, odometry, and the goal."""
 
 import math
 from collections.abc import Mapping
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 
 Ranges = NDArray[np.float64]
 Points = NDArray[np.float64]  # (N, 2) [m] x forward, y left, in the robot frame
@@ -52,6 +53,8 @@ class Percept:
         sonar_angle_rad: (N,) [rad] direction of each sonar in the robot frame, positive to the left.
         linear_m_s: [m/s] forward speed from the wheels.
         angular_rad_s: [rad/s] turn rate from the wheels, positive to the left.
+        odometry: pose of the robot integrated from the wheels. Its frame is that of the place, and drifts.
+        goal_m: [m] x, y of the robot's goal in the frame of `odometry`; None without a goal.
         images: new images by camera name, such as `colour`, (H, W, 3) uint8 sRGB; may be rendered on demand.
         image_age_s: [s] age of the newest image; `people` are those of that image.
         fault: why people cannot be detected now, such as a tracker's error; empty if all is well.
@@ -66,6 +69,8 @@ class Percept:
     sonar_angle_rad: Ranges
     linear_m_s: float
     angular_rad_s: float
+    odometry: Pose2 = field(default_factory=Pose2)
+    goal_m: tuple[float, float] | None = None
     images: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
     image_age_s: float = 0.0
     fault: str = ""
@@ -84,6 +89,7 @@ class Percept:
 
     @property
     def is_sound(self) -> bool:
-        """Whether time and speeds are finite and there is at least one sonar."""
-        numbers = (self.time_s, self.linear_m_s, self.angular_rad_s)
+        """Whether time, speeds and pose are finite and there is at least one sonar."""
+        pose = (self.odometry.x, self.odometry.y, self.odometry.heading)
+        numbers = (self.time_s, self.linear_m_s, self.angular_rad_s, *pose)
         return all(map(math.isfinite, numbers)) and self.sonar_m.size > 0

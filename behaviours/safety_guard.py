@@ -107,6 +107,8 @@ PASSING = EchoMemoryConfig(keep_s=2.0, within_m=1.1)
 class Guarded:
     """Wrapper that passes sonar ranges without drop-outs to a behaviour, and limits its commands by them.
 
+    A behaviour with a goal also gets that, in percepts that have none.
+
     The robot stops at once when images are missing, people cannot be detected in them, or the sonars have
     failed; the behaviour is not called then, and resumes afterwards: after missing images when several came
     in a row.
@@ -118,8 +120,15 @@ class Guarded:
         is_limited: whether the last command was changed.
     """
 
-    def __init__(self, behaviour: Behaviour, config: SafetyConfig | None = None, readings: int = 3) -> None:
+    def __init__(
+        self,
+        behaviour: Behaviour,
+        config: SafetyConfig | None = None,
+        readings: int = 3,
+        goal_m: tuple[float, float] | None = None,
+    ) -> None:
         self._behaviour = behaviour
+        self._goal_m = goal_m
         self._config = SafetyConfig() if config is None else config
         self._recent: deque[Points] = deque(maxlen=readings)
         self._memory = EchoMemory()
@@ -151,7 +160,8 @@ class Guarded:
             self.is_limited = True
             return EMERGENCY_STOP
         self._recent.append(percept.sonar_m)
-        steady = replace(percept, sonar_m=fill_drop_outs(list(self._recent)))
+        goal_m = self._goal_m if percept.goal_m is None else percept.goal_m
+        steady = replace(percept, sonar_m=fill_drop_outs(list(self._recent)), goal_m=goal_m)
         self._fault = self._deafness.listen(steady, percept.sonar_m)
         room_m = self._room_m()
         if not self._fault and room_m <= self._config.last_m:

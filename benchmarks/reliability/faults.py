@@ -118,13 +118,13 @@ def run_with(fault: str, scenario: Scenario, seed: int, tracker: str) -> FaultRu
             seed=seed, out=Path(folder) / "run", tracker=tracker, physics="kinematic", record=False
         )
         scores = run(scenario, options, watch)
-    assert scores.following is not None  # all scenarios are of following
+    assert scores.drive.following is not None  # all scenarios are of following
     time_s, speed_m_s, x_m, y_m, follows = np.array(watch.rows).T
     driven_m = way_along(np.stack([x_m, y_m], axis=1))
     again = time_s[(time_s >= FROM_S + LASTS_S - 1e-6) & (follows > 0.0)]
     return FaultRun(
         people=scores.people,
-        following=scores.following,
+        following=scores.drive.following,
         contacts=sum(contact.cause == "robot" for contact in scores.contacts),
         stop=measure_stop(time_s, speed_m_s, driven_m, spec),
         recovered_s=float(again[0]) - FROM_S - LASTS_S if len(again) else math.nan,

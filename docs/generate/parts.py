@@ -13,7 +13,7 @@ from docs.generate.commands import commands
 from docs.generate.random_worlds import bearings, distribution
 from docs.generate.reference.environments import environment_ids, environment_spaces, environment_tracks
 from docs.generate.reference.library import gallery, library_table
-from docs.generate.reference.metrics import comfort, corridor, following, metrics
+from docs.generate.reference.metrics import comfort, corridor, following, goal, metrics
 from docs.generate.reference.settings import settings
 from docs.generate.reference.trackers import trackers
 from docs.generate.results import results
@@ -46,6 +46,7 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "metrics latency": partial(metrics, "latency"),
     "metrics counts": partial(metrics, "counts"),
     "metrics comfort": comfort,
+    "metrics goal": goal,
     "metrics following": following,
     "metrics corridor": corridor,
     "sources": lambda: overview(SourceRun.read()),

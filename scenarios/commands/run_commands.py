@@ -150,10 +150,8 @@ def _show(scores: "RunScores", options: "RunOptions") -> None:
     from peopleboy.scenarios.scores.tables.show_scores import print_drive, print_scores
 
     print_scores(scores.people)
-    drives = {"following": scores.following, "corridor": scores.corridor, "comfort": scores.comfort}
-    for title, score in drives.items():
-        if score is not None:
-            print_drive(title, score.rows())
+    for title, score in scores.drive.groups.items():
+        print_drive(title, score.rows())
     click.echo(headline(scores))
     for note in scores.notes:
         print_note(note)

@@ -13,6 +13,7 @@ from peopleboy.scenarios.drawing.plan_sheet import Labels, footprints
 from peopleboy.scenarios.files.check import ROBOT_M
 from peopleboy.scenarios.files.robot import CommandSpec
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.scores.goal_metrics import REACHED_M
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walker import ALONE, Walker
@@ -212,7 +213,7 @@ _FAR_M = 100.0
 
 
 def draw_robot(axes: Axes, labels: Labels, scenario: Scenario, robot: RobotConfig) -> None:
-    """Draw the robot at its start, and the field of view of its thermal camera up to the walls."""
+    """Draw the robot at its start, its goal, and the field of view of its thermal camera up to the walls."""
     x, y = robot.at_m
     _draw_view(axes, labels, robot, scenario.place)
     track = _script_track(scenario, robot)
@@ -231,6 +232,12 @@ def draw_robot(axes: Axes, labels: Labels, scenario: Scenario, robot: RobotConfi
     )
     labels.block(x, y, ROBOT_M)
     labels.write(x - 0.2, y - 0.2, "robot", size=7.5, color=_COLOUR, weight="bold")
+    if scenario.robot.goal_m is not None:
+        x, y = scenario.robot.goal_m
+        for radius_m in (REACHED_M, ROBOT_M / 2.0):
+            axes.add_patch(Circle((x, y), radius_m, facecolor="none", edgecolor=_COLOUR, lw=1.4, zorder=6))
+        labels.block(x, y, ROBOT_M)
+        labels.write(x, y, "goal", size=7.5, color=_COLOUR, weight="bold")
 
 
 def _draw_view(axes: Axes, labels: Labels, robot: RobotConfig, place: Place) -> None:

@@ -52,6 +52,7 @@ from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.drive_record import TARGET
 from peopleboy.scenarios.scores.following_metrics import following_task
+from peopleboy.scenarios.scores.goal_metrics import goal_task
 from peopleboy.sim.batch.sensing import Snapshot, take_snapshot
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.observation import Observation, Senses
@@ -78,10 +79,11 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
     Action: (2,) within -1..1, as shares of the robot's limits of forward speed (0.8 m/s) and turn rate
     (150 deg/s, positive to the left); larger values are clipped. Observations are described in
-    `observations`, the reward in `rewards`. An episode terminates when the robot touches anything, or, unless
-    the task is "corridor", when the person to follow has been out of sight for 10 s; it is truncated at the
-    end of the scenario's duration. `info` holds `truth` (an `ImageFreeTruth`), `reward` (its terms), `events`
-    (new events, each with the other party), `seed`, and, at the end of the episode, `metrics`.
+    `observations`, the reward in `rewards`. An episode terminates when the robot touches anything, in
+    "follow" and "patrol" when the person to follow has been out of sight for 10 s, in "go_to" when the robot
+    reaches its goal; it is truncated at the end of the scenario's duration. `info` holds `truth` (an
+    `ImageFreeTruth`), `reward` (its terms), `events` (new events, each with the other party), `seed`, and, at
+    the end of the episode, `metrics`.
 
     `reset(seed=3)` plays the world of `peopleboy run --seed 3`: the same commands give the same ground truth
     and, with the tracks of the same tracker, the same metrics. `reset()` samples the next seed from that
@@ -91,7 +93,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     Args:
         scenario: library name or path of a YAML file; None for a random world of 30 s at every reset, sampled
             from `peopleboy.scenarios.random_worlds.distribution` with the episode's seed.
-        task: "follow", "corridor" or "patrol"; selects the reward.
+        task: "follow", "corridor", "patrol" or "go_to", which needs a scenario with `robot.goal_m`; selects
+            the reward.
         observation: "pixels"; "tracks", the output of the tracker; or "truth", the output of a perfect
             tracker, for which nothing is rendered.
         image_size: width and height [px] of all images.
@@ -164,8 +167,11 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         shown = shown_cameras(cameras, observation, self._robot)
         normaliser = Normaliser(self._robot) if normalise else None
-        self.builder = ObservationBuilder(observation, self._robot, shown, normaliser)
-        space = observation_space(observation, self._robot, shown)
+        has_goal = first.robot.goal_m is not None
+        if task == "go_to" and not has_goal:
+            raise BadInput(f"task 'go_to': scenario {first.name!r} has no goal; give it robot.goal_m")
+        self.builder = ObservationBuilder(observation, self._robot, shown, normaliser, has_goal=has_goal)
+        space = observation_space(observation, self._robot, shown, has_goal=has_goal)
         self.observation_space = space if normaliser is None else normaliser.space(space)
         self._faults: SensorFaults | None = None
         self.join(LiveEpisodes(1, task), 0)
@@ -215,6 +221,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         settings = EpisodeSettings(
             plan=self._scenario.plan,
             following=following_task(config, self._scenario.follow_config().keep_height),
+            goal=self._goal,
             frames=min(round(self._scenario.duration_s * config.control_hz), self._max_steps),
             dt_s=self._dt_s,
             limits=config.robot.drive.limits,
@@ -454,6 +461,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """Play this scenario from the next episode on."""
         self._scenario = scenario.mounting(self._wanted) if self._kind == "tracks" else scenario
         self._robot = resized(self._scenario.robot.config(), self._size)
+        self._goal = goal_task(scenario)
         self._picture = ScenePicture(scenario.plan, scenario.place) if self.render_mode else None
 
     def _config(self) -> WorldConfig:

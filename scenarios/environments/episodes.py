@@ -23,6 +23,7 @@ from peopleboy.scenarios.scores.corridor_metrics import legs_of, score_corridor
 from peopleboy.scenarios.scores.drive_record import TARGET, DriveRecord
 from peopleboy.scenarios.scores.episode_result import DriveScores, EpisodeResult
 from peopleboy.scenarios.scores.following_metrics import FollowingTask, Spot, score_following, track_on
+from peopleboy.scenarios.scores.goal_metrics import GoalTask, score_goal
 from peopleboy.sim.batch.sensing import Snapshot
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.shapes.shape_table import Numbers, ends
@@ -42,8 +43,8 @@ class EpisodeMetrics:
     `followed_to_end` depends on the track alone.
     """
 
-    def __init__(self, plan: FloorPlan, task: FollowingTask) -> None:
-        self._plan, self._task = plan, task
+    def __init__(self, plan: FloorPlan, task: FollowingTask, goal: GoalTask | None) -> None:
+        self._plan, self._task, self._goal = plan, task, goal
         self._noted: list[tuple[Scenes, int, int]] = []
 
     def add(self, scenes: Scenes, row: int, track: int) -> None:
@@ -81,6 +82,7 @@ class EpisodeMetrics:
             people=np.column_stack([people["position_m"], people["velocity_m_s"]]),
         )
         return DriveScores(
+            goal=None if self._goal is None else score_goal(drive, self._goal),
             following=score_following(drive, self._task),
             corridor=score_corridor(drive, legs_of(self._plan)),
             comfort=score_comfort(drive),
@@ -117,6 +119,7 @@ class EpisodeSettings(NamedTuple):
     Attributes:
         plan: floor plan of the place.
         following: settings of the task to follow a person.
+        goal: place to drive to; None without one.
         frames: steps after which the episode is truncated.
         dt_s: [s] length of a step.
         limits: [m/s, rad/s] speed limits of the drive.
@@ -124,6 +127,7 @@ class EpisodeSettings(NamedTuple):
 
     plan: FloorPlan
     following: FollowingTask
+    goal: GoalTask | None
     frames: int
     dt_s: float
     limits: tuple[float, float]
@@ -133,7 +137,7 @@ class StepOutcomes(NamedTuple):
     """Outcome of a step in G worlds.
 
     Attributes:
-        terms: (G, 8) terms of the reward, in the order of `TERMS`.
+        terms: (G, 10) terms of the reward, in the order of `TERMS`.
         rewards: (G,) sums of the terms.
         terminations, truncations: (G,) whether the episodes are over.
         events: new events, each with the name of the other party.
@@ -179,9 +183,11 @@ class LiveEpisodes:
         self.records[number] = np.zeros((), EPISODE)
         own = self.records[number : number + 1]
         own["start"], own["frame"], own["frames"] = snapshot.odometry, -1, settings.frames
+        goal_m = (math.nan, math.nan) if settings.goal is None else settings.goal.goal_m
+        own["goal"], own["away_m"] = goal_m, math.dist(goal_m, snapshot.scenes.worlds["robot"][0, :2])
         own["dt_s"], own["keep_m"], own["limits"] = settings.dt_s, settings.following.keep_m, settings.limits
         self._plans[number], self._touched[number] = areas_of(settings.plan), set()
-        self._metrics[number] = EpisodeMetrics(settings.plan, settings.following)
+        self._metrics[number] = EpisodeMetrics(settings.plan, settings.following, settings.goal)
         self._terms[number] = []
         self._lay_out()
         outcomes = self.evaluate(snapshot, np.zeros((1, 2)), tracks)
@@ -222,10 +228,8 @@ class LiveEpisodes:
         )
 
     def metrics(self, number: int) -> Metrics:
-        """Return the groups `following`, `corridor` and `comfort` of metrics.json; NaN if undefined."""
-        scores = self._metrics[number].scores()
-        groups = {"following": scores.following, "corridor": scores.corridor, "comfort": scores.comfort}
-        return {name: asdict(group) for name, group in groups.items() if group is not None}
+        """Return the groups `goal`, `following`, `corridor`, `comfort` of metrics.json; NaN if undefined."""
+        return {name: asdict(group) for name, group in self._metrics[number].scores().groups.items()}
 
     def result(self, number: int) -> EpisodeResult:
         """Return scores, rewards and end of an episode so far."""

@@ -95,6 +95,21 @@ def fill_tracks(
             rows[tallest, 2] = -np.inf
 
 
+@njit(cache=True, nogil=True)
+def fill_goal(goals: Array, now: Array, found: NDArray[np.float32]) -> None:
+    """Fill `goal`.
+
+    Args:
+        goals: (G, 2) [m] x, y of the goals, world frame.
+        now: (G, 3) x, y [m], heading [rad] from odometry, which starts in the world frame.
+        found: (G, 3) output: distance [m], cosine and sine of the bearing from the heading.
+    """
+    for row in range(len(goals)):
+        dx, dy = goals[row, 0] - now[row, 0], goals[row, 1] - now[row, 1]
+        bearing = math.atan2(dy, dx) - now[row, 2]
+        found[row, 0], found[row, 1], found[row, 2] = math.hypot(dx, dy), math.cos(bearing), math.sin(bearing)
+
+
 Arrays = dict[str, NDArray[Any]]
 
 KINDS: Final = ("pixels", "tracks", "truth")
@@ -114,11 +129,14 @@ _FARTHEST_M: Final = 1e4
 _FASTEST: Final = 10.0
 
 
-def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> spaces.Space[Arrays]:
+def observation_space(
+    kind: str, robot: RobotConfig, shown: Sequence[str], *, has_goal: bool = False
+) -> spaces.Space[Arrays]:
     """Return the space of one of `KINDS`.
 
     `sonar` is (16,) [m], counted from the left through the front; `odometry` is (6,): x, y [m] in the frame
     of the start pose, cosine and sine of the heading since the start, forward speed [m/s], turn rate [rad/s].
+    With a goal, `goal` is (3,): its distance [m], cosine and sine of its bearing, by odometry.
     `pixels` adds the newest image of each camera in `shown` under its name, (H, W, 1) or (H, W, 3) uint8,
     such as `thermal` and `colour`, or for a depth camera (H, W, 1) uint16 [mm]; `tracks` and `truth` add
     `tracks` (35,), five rows of `COLUMNS`.
@@ -129,6 +147,10 @@ def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> sp
         "sonar": spaces.Box(sonar.nearest_m, sonar.farthest_m, (_SONARS,), np.float32),
         "odometry": spaces.Box(-odometry, odometry, dtype=np.float32),
     }
+    if has_goal:
+        goal = np.array([_FARTHEST_M, 1.0, 1.0], np.float32)
+        lowest = np.array([0.0, -1.0, -1.0], np.float32)
+        found["goal"] = spaces.Box(lowest, goal, dtype=np.float32)
     if kind == "pixels":
         for name in shown:
             camera = robot.cameras[name]
@@ -196,7 +218,7 @@ def _fill(
 
 
 AWAY_M: Final = 20.0
-"""[m] x and y of `odometry` that are scaled to 1."""
+"""[m] x and y of `odometry`, and distance of `goal`, that are scaled to 1."""
 
 IMAGES: Final = 2.0
 """[image heights] height, top and bottom of `tracks` that are scaled to 1."""
@@ -214,6 +236,8 @@ class Normaliser:
     | `odometry` x, y | -1..1 for -20..20 m |
     | `odometry` cosine, sine | unchanged |
     | `odometry` speed, turn rate | -1..1, shares of the drive's limits |
+    | `goal` distance | 0..1 for 0..20 m |
+    | `goal` cosine, sine | unchanged |
     | `tracks` id | 1 for a person, 0 for none; people keep their rows, new people take the first free row |
     | `tracks` x | -1..1, half image widths |
     | `tracks` height, top, bottom | 0..1, -1..1, -1..1 for two image heights |
@@ -233,6 +257,7 @@ class Normaliser:
         lowest = {
             "sonar": np.zeros(raw["sonar"].shape, np.float32),  # type: ignore[index]  # it is a Dict
             "odometry": -np.ones(len(self._odometry), np.float32),
+            "goal": np.array([0.0, -1.0, -1.0], np.float32),
             "tracks": np.tile(np.array(_LOWEST_SHARES, np.float32), MOST_TRACKS),
         }
         return spaces.Dict(  # type: ignore[return-value]  # typed there as if samples were spaces
@@ -254,6 +279,8 @@ class Normaliser:
             "sonar": np.clip(observation["sonar"] / self._reach_m, 0.0, 1.0),
             "odometry": np.clip(observation["odometry"] / self._odometry, -1.0, 1.0),
         }
+        if "goal" in observation:
+            found["goal"] = np.minimum(observation["goal"] / np.array([AWAY_M, 1.0, 1.0], np.float32), 1.0)
         if "tracks" in observation:
             given = observation["tracks"].reshape(-1, MOST_TRACKS, len(COLUMNS))
             shares = np.clip(given / _SCALES, _LOWEST_SHARES, 1.0)
@@ -294,6 +321,7 @@ class ObservationBuilder:
         robot: robot with the cameras, the same in all worlds.
         shown: names of the cameras whose images `pixels` contains.
         normaliser: scales numbers to -1..1; None leaves them unscaled.
+        has_goal: whether the observations contain the direction of the robot's goal.
 
     Attributes:
         tracks: whether the observations need a tracker.
@@ -301,8 +329,15 @@ class ObservationBuilder:
     """
 
     def __init__(
-        self, kind: str, robot: RobotConfig, shown: Sequence[str], normaliser: Normaliser | None
+        self,
+        kind: str,
+        robot: RobotConfig,
+        shown: Sequence[str],
+        normaliser: Normaliser | None,
+        *,
+        has_goal: bool,
     ) -> None:
+        self._has_goal = has_goal
         self._kind, self._robot, self._normaliser = kind, robot, normaliser
         self._shapes = {name: image_shape(robot.cameras[name]) for name in shown} if kind == "pixels" else {}
         self.tracks = kind == "tracks"
@@ -318,6 +353,9 @@ class ObservationBuilder:
         """
         numbers = snapshot.numbers
         found = read_sensors(snapshot, episodes["start"][numbers])
+        if self._has_goal:
+            found["goal"] = np.empty((len(numbers), 3), np.float32)
+            fill_goal(episodes["goal"][numbers], snapshot.odometry, found["goal"])
         if self._kind == "truth":
             found["tracks"] = observe_truth(snapshot.scenes, self._robot)
         elif tracks is not None:

@@ -1,23 +1,26 @@
 """Compute the reward of a controller for one control step.
 
-    reward = keep + face + progress + centre + space + change + collision + lost
+    reward = keep + face + progress + centre + approach + space + change + collision + lost + arrival
 
 The unit is one second of perfect performance. With dt [s] the length of a step, d [m] the floor distance
 to the person to follow, b [rad] the bearing of that person, v [m/s] the speed along the corridor, y [m] the
-distance from the corridor's centre line, W [m] its width, g [m] the gap to the nearest person, a [-1..1] the
-action:
+distance from the corridor's centre line, W [m] its width, r [m] the distance to the goal, g [m] the gap to
+the nearest person, a [-1..1] the action:
 
     keep      = dt / 2 * max(0, 1 - |d - d_keep| / 3 m)      while the person is visible
     face      = dt / 2 * max(0, 1 - |b| / (pi / 3))          while the person is visible
     progress  = dt * |v| / v_max                             in a corridor
     centre    = -dt / 2 * min(1, |y| / (W / 2))              in a corridor
+    approach  = (r_before - r) / v_max                       towards the goal
     space     = -dt / 2 * max(0, 1 - g / 1.2 m)
     change    = -dt / 20 * |a - a_before|^2
     collision = -10                                          once; the episode ends
     lost      = -10                                          once; the episode ends
+    arrival   = 10                                           once, at 0.5 m from the goal; the episode ends
 
 "follow" includes keep and face, "corridor" includes progress and centre, "patrol" includes keep and face
-while the person is visible, and progress and centre otherwise; all three include the other terms.
+while the person is visible, and progress and centre otherwise, "go_to" includes approach and arrival; lost is
+part of "follow" and "patrol", and the other terms of all four.
 """
 
 import math
@@ -27,6 +30,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.scores.goal_metrics import REACHED_M
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.shapes.shape_table import Numbers
@@ -45,6 +49,8 @@ EPISODE: Final = np.dtype(
         ("dt_s", np.float64),
         ("keep_m", np.float64),  # [m] distance to keep
         ("limits", np.float64, 2),  # [m/s, rad/s] of the drive
+        ("goal", np.float64, 2),  # [m] in the world frame, NaN without a goal
+        ("away_m", np.float64),  # [m] distance from the goal at the last instant
         ("unseen_s", np.float64),  # [s] since the person to follow was last visible
         ("has_seen", np.int64),  # number of the person to follow, once seen
         ("seen", np.uint64),  # one bit for each visible person; the lowest bit is the first person
@@ -71,6 +77,7 @@ class Situation(NamedTuple):
         lateral_share: offset from the corridor's centre line in half widths, left positive.
         collided: whether the robot touches anything but the floor.
         is_lost: whether the target has been out of sight for 10 s after it was seen.
+        away_m: [m] distance from the goal, NaN without a goal.
     """
 
     sees_target: bool
@@ -81,6 +88,7 @@ class Situation(NamedTuple):
     lateral_share: float
     collided: bool
     is_lost: bool
+    away_m: float
 
 
 @njit(cache=True)
@@ -120,8 +128,9 @@ def observe_situation(
     episode.seen = seen
     along, lateral = _corridor_motion(scene, areas)
     is_lost = may_lose and episode.unseen_s >= LOST_S
+    away_m = math.hypot(scene.robot[0] - episode.goal[0], scene.robot[1] - episode.goal[1])
     return Situation(
-        sees, distance_m, bearing_rad, gap_m, along, lateral, scene.is_touching, is_lost
+        sees, distance_m, bearing_rad, gap_m, along, lateral, scene.is_touching, is_lost, away_m
     )  # fmt: skip
 
 
@@ -154,16 +163,19 @@ def areas_of(plan: FloorPlan) -> Array:
     return np.array(rows, np.float64).reshape(-1, 4)
 
 
-TASKS: Final = ("follow", "corridor", "patrol")
-TERMS: Final = ("keep", "face", "progress", "centre", "space", "change", "collision", "lost")
-ENDS: Final = tuple(TERMS.index(name) for name in ("collision", "lost"))  # terms that end an episode
+TASKS: Final = ("follow", "corridor", "patrol", "go_to")
+TERMS: Final = (
+    "keep", "face", "progress", "centre", "approach", "space", "change", "collision", "lost", "arrival",
+)  # fmt: skip
+ENDS: Final = tuple(TERMS.index(name) for name in ("collision", "lost", "arrival"))  # that end an episode
 COLLISION: Final = -10.0
 LOST: Final = -10.0
+ARRIVAL: Final = 10.0
 PERSONAL_SPACE_M: Final = 1.2
 _KEEP_WITHIN_M: Final = 3.0
 _FACE_WITHIN_RAD: Final = math.pi / 3.0
-_FOLLOW, _CORRIDOR, _PATROL = range(len(TASKS))
-_KEEP, _FACE, _PROGRESS, _CENTRE, _SPACE, _CHANGE, _COLLISION, _LOST = range(len(TERMS))
+_FOLLOW, _CORRIDOR, _PATROL, _GO_TO = range(len(TASKS))
+_KEEP, _FACE, _PROGRESS, _CENTRE, _APPROACH, _SPACE, _CHANGE, _COLLISION, _LOST, _ARRIVAL = range(len(TERMS))
 
 
 @njit(cache=True, nogil=True)
@@ -191,15 +203,17 @@ def compute_rewards(
         first_area: (B + 1,) row at which the areas of each episode begin.
         actions: (G, 2) actions that led to this instant.
         two: 2, passed as an argument so that squares use the library's power function, as in Python.
-        terms: (G, 8) output: terms of the reward in the order of `TERMS`; their sum is the reward.
+        terms: (G, 10) output: terms of the reward in the order of `TERMS`; their sum is the reward.
     """
     for row in range(len(numbers)):
         number = numbers[row]
         own, episode = areas[first_area[number] : first_area[number + 1]], episodes[number]
-        situation = observe_situation(episode, scenes[row], people, own, task != _CORRIDOR)
+        may_lose = task in (_FOLLOW, _PATROL)
+        situation = observe_situation(episode, scenes[row], people, own, may_lose)
         _earn(task, situation, episode, actions[row], two, terms[row])
         episode.action[0], episode.action[1] = actions[row, 0], actions[row, 1]
-        ends = situation.collided or situation.is_lost
+        episode.away_m = situation.away_m
+        ends = situation.collided or situation.is_lost or terms[row, _ARRIVAL] != 0.0
         episode.is_over = ends or episode.frame >= episode.frames
 
 
@@ -211,7 +225,10 @@ def _earn(task: int, situation: Situation, episode: Record, action: Array, two: 
     if follows and situation.sees_target:
         terms[_KEEP] = dt_s / 2.0 * _near(situation.distance_m - episode.keep_m, _KEEP_WITHIN_M)
         terms[_FACE] = dt_s / 2.0 * _near(situation.bearing_rad, _FACE_WITHIN_RAD)
-    if not follows:
+    if task == _GO_TO:
+        terms[_APPROACH] = (episode.away_m - situation.away_m) / episode.limits[0]
+        terms[_ARRIVAL] = ARRIVAL if situation.away_m < REACHED_M else 0.0
+    elif not follows:
         terms[_PROGRESS] = dt_s * abs(situation.along_m_s) / episode.limits[0]
         terms[_CENTRE] = -dt_s / 2.0 * min(abs(situation.lateral_share), 1.0)
     terms[_SPACE] = -dt_s / 2.0 * _near(max(situation.gap_m, 0.0), PERSONAL_SPACE_M)

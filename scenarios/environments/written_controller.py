@@ -1,10 +1,13 @@
 """Hand-written behaviours as controllers of an environment, which map observations to actions."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.percept import Percept, SeenPerson
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.environments.observations import COLUMNS, Arrays
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD
 from peopleboy.sim.robot.robot_config import DriveConfig
@@ -31,7 +34,8 @@ class WrittenController:
     def __call__(self, observation: Arrays) -> NDArray[np.float32]:
         """Return the action (2,) for an observation with `tracks`; call it once per step."""
         rows = observation["tracks"].reshape(-1, len(COLUMNS)).tolist()
-        speed, turn_rate = observation["odometry"][4:].tolist()
+        x, y, cosine, sine, speed, turn_rate = observation["odometry"].tolist()
+        pose = Pose2(x, y, math.atan2(sine, cosine))
         percept = Percept(
             time_s=self._time_s,
             people=tuple(_person(row) for row in rows if row[0] > 0),
@@ -39,6 +43,8 @@ class WrittenController:
             sonar_angle_rad=SONAR_ANGLE_RAD,
             linear_m_s=speed,
             angular_rad_s=turn_rate,
+            odometry=pose,
+            goal_m=_goal(pose, observation["goal"]) if "goal" in observation else None,
             images={"colour": observation["colour"]} if "colour" in observation else {},
         )
         self._time_s += _DT_S
@@ -46,6 +52,13 @@ class WrittenController:
         limits = self._limits
         shares = command.linear_m_s / limits.max_linear_m_s, command.angular_rad_s / limits.max_angular_rad_s
         return np.clip(np.array(shares, np.float32), -1.0, 1.0)
+
+
+def _goal(pose: Pose2, goal: NDArray[np.float32]) -> tuple[float, float]:
+    """Return the goal [m] in the frame of the start pose."""
+    distance_m, cosine, sine = goal.tolist()
+    x, y = pose.transform_polar(distance_m, math.atan2(sine, cosine)).tolist()
+    return x, y
 
 
 def _person(row: list[float]) -> SeenPerson:

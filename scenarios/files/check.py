@@ -13,6 +13,7 @@ from peopleboy.bad_input import BadInput, Key, dotted, found_in, gathered
 from peopleboy.scenarios.files.check_moves import MovedThings
 from peopleboy.scenarios.files.people import PersonSpec
 from peopleboy.scenarios.files.robot import ORACLE, RobotSpec, check_cameras
+from peopleboy.scenarios.files.routes import Point, find_route
 from peopleboy.scenarios.files.scenario_file import (
     STRENGTHS,
     CameraFault,
@@ -64,6 +65,15 @@ class Ground:
         moved = None if found else self.moved.fault(person, BODY_M)
         if moved is not None:
             yield moved
+
+    @property
+    def robot_boxes(self) -> tuple[Rectangle, ...]:
+        """The boxes, grown by the robot's radius."""
+        return tuple(box.grown(ROBOT_M - BODY_M) for box in self.boxes)
+
+    def robot_route(self, start: Point, end: Point) -> tuple[Point, ...] | None:
+        """Return the corners of the robot's shortest route between two places; None without a route."""
+        return find_route(self.plan, self.robot_boxes, start, end)
 
     def _path_faults(self, path: Sequence[Waypoint]) -> Iterator[BadInput]:
         """Yield a fault for each waypoint that is not free, and each line between free ones that is not."""
@@ -272,21 +282,21 @@ def _check_faces(person: PersonSpec, names: Sequence[str]) -> None:
 
 def _check_robot(spec: ScenarioSpec, ground: Ground) -> None:
     with found_in("robot"):
-        _check_start(spec.robot, ground)
+        with found_in("at_m"):
+            _check_spot(spec.robot.at_m, ground)
         _check_behaviour(spec.robot)
+        _check_goal(spec.robot, ground)
         _check_order("from_s", [command.from_s for command in spec.robot.commands], ("commands",))
 
 
-def _check_start(robot: RobotSpec, ground: Ground) -> None:
-    x, y = robot.at_m
-    margin = ROBOT_M - BODY_M
-    for box, name in zip(ground.boxes, ground.names, strict=True):
-        if box.grown(margin).contains(x, y):
-            raise BadInput(
-                f"({x:g}, {y:g}) is in or within {ROBOT_M:g} m of {name!r}; move it away", key=("at_m",)
-            )
+def _check_spot(spot: Point, ground: Ground) -> None:
+    """Refuse a place where the robot cannot stand."""
+    x, y = spot
+    for box, name in zip(ground.robot_boxes, ground.names, strict=True):
+        if box.contains(x, y):
+            raise BadInput(f"({x:g}, {y:g}) is in or within {ROBOT_M:g} m of {name!r}; move it away")
     if not ground.plan.contains(x, y):
-        raise BadInput(f"({x:g}, {y:g}) is outside the floor; {ground.plan.describe()}", key=("at_m",))
+        raise BadInput(f"({x:g}, {y:g}) is outside the floor; {ground.plan.describe()}")
 
 
 def _check_behaviour(robot: RobotSpec) -> None:
@@ -303,8 +313,24 @@ def _check_behaviour(robot: RobotSpec) -> None:
             raise BadInput("only behaviour 'follow_person' takes it; leave it out", key=(key,))
     if robot.walls_by is not None and robot.behaviour != "follow_corridor":
         raise BadInput("only behaviour 'follow_corridor' takes it; leave it out", key=("walls_by",))
+    if robot.behaviour == "go_to" and robot.goal_m is None:
+        raise BadInput("behaviour 'go_to' needs one, such as [6.0, 1.5]", key=("goal_m",))
     if robot.tracker is not None:
         _check_tracker(robot.tracker)
+
+
+def _check_goal(robot: RobotSpec, ground: Ground) -> None:
+    """Refuse a goal that the robot cannot stand at or get to."""
+    if robot.goal_m is None:
+        return
+    with found_in("goal_m"):
+        _check_spot(robot.goal_m, ground)
+        if ground.robot_route(robot.at_m, robot.goal_m) is None:
+            (x, y), (x0, y0) = robot.goal_m, robot.at_m
+            raise BadInput(
+                f"no gap of {2.0 * ROBOT_M:g} m leads the robot from ({x0:g}, {y0:g}) to ({x:g}, {y:g}); "
+                "move the goal, or what stands in between"
+            )
 
 
 def _check_tracker(name: str) -> None:

@@ -89,6 +89,13 @@ class RobotSpec:
         Literal["sonar", "image"] | None,
         Field(description="for a robot in corridors: sensor that measures the walls, by default `sonar`"),
     ] = None
+    goal_m: Annotated[
+        Point | None,
+        Field(
+            description="place to drive to, which `go_to` needs and your own behaviour gets in "
+            "`Percept.goal_m`; the run is scored by whether the robot reaches it"
+        ),
+    ] = None
     tracker: Annotated[
         str | None,
         Field(

@@ -225,6 +225,7 @@ class Scenario:
             script=script,
             follow=self.follow_config(),
             corridor=self.corridor_config(),
+            goal_m=self.robot.goal_m,
         )
 
     def follow_config(self) -> FollowConfig:

@@ -215,7 +215,7 @@ def make_percept(
     image_age_s: float = 0.0,
     fault: str = "",
 ) -> Percept:
-    """Return the input of the behaviour: confirmed tracks, sonar ranges and speeds from the wheels."""
+    """Return the input of the behaviour: confirmed tracks, sonar ranges, speeds and pose from the wheels."""
     camera = flat_geometry(cameras, THERMAL)
     thermal, height, width = calibrations[THERMAL], camera.height, camera.width
     people = tuple(
@@ -231,6 +231,7 @@ def make_percept(
         sonar_angle_rad=SONAR_ANGLE_RAD,
         linear_m_s=(left + right) / 2.0,
         angular_rad_s=(right - left) / WHEEL_DISTANCE_M,
+        odometry=observation.odometry,
         images=observation.images,
         image_age_s=image_age_s,
         fault=fault,

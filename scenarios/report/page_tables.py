@@ -1,7 +1,7 @@
 """Build the tables of a page, with explanations for readers who do not know the metrics."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from statistics import fmean, stdev
 from typing import Final, NamedTuple
@@ -18,8 +18,9 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
-from peopleboy.scenarios.scores.drive_record import Row
+from peopleboy.scenarios.scores.drive_record import Row, ScoreRecord
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
+from peopleboy.scenarios.scores.goal_metrics import GoalScore
 from peopleboy.sim.truth.events import Move
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length, name_length
 from peopleboy.tracker.evaluation.table import FIGURES, IF_KNOWN, Figure
@@ -38,7 +39,12 @@ PLAIN: Final = (
     ("IDSW", "switches", "How often the number of a person changed, even if only for a moment."),
     ("false_tracks", "false tracks", "Tracks that are never on a person."),
 )  # fmt: skip
-_SCORES: Final = {"following": FollowingScore, "corridor": CorridorScore, "comfort": ComfortScore}
+_SCORES: Final[Mapping[str, type[ScoreRecord]]] = {
+    "goal": GoalScore,
+    "following": FollowingScore,
+    "corridor": CorridorScore,
+    "comfort": ComfortScore,
+}
 
 
 class Head(NamedTuple):
@@ -207,7 +213,7 @@ def _rows(run: FinishedRun, group: str) -> list[Row]:
     figures = run.metrics.get(group)
     if figures is None:
         return []
-    score: Callable[..., FollowingScore | CorridorScore | ComfortScore] = _SCORES[group]
+    score: Callable[..., ScoreRecord] = _SCORES[group]
     try:
         return score(**{name: math.nan if v is None else v for name, v in figures.items()}).rows()
     except (TypeError, ValueError, AttributeError) as error:

@@ -34,6 +34,7 @@ from peopleboy.tracker.frame import THERMAL
 HERE = Path(__file__).parent
 _NAMED = 4  # scenarios in a title
 _DRIVES = {
+    "goal": "Driving to the goal",
     "following": "Person following",
     "corridor": "Corridor following",
     "comfort": "Comfort of people near the robot",

@@ -31,11 +31,10 @@ from peopleboy.scenarios.scores.bootstrap import (
     none_for_nan,
 )
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
+from peopleboy.scenarios.scores.episode_result import DRIVE_GROUPS
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 from peopleboy.user_files import read_json
-
-GROUPS = ("following", "corridor", "comfort")  # groups of metrics.json on how the robot drove
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +147,7 @@ def _differences(of_first: Sequence[Figures], of_other: Sequence[Figures]) -> di
 def figures_of(folder: Path) -> dict[str, float]:
     """Read the metrics of how the robot drove from a run's folder; booleans become 1 and 0."""
     metrics = read_json(folder / "metrics.json")
-    groups = [metrics[name] for name in GROUPS if name in metrics]
+    groups = [metrics[name] for name in DRIVE_GROUPS if name in metrics]
     return {
         name: math.nan if value is None else float(value) for group in groups for name, value in group.items()
     }

@@ -35,6 +35,7 @@ from peopleboy.scenarios.scores.corridor_metrics import legs_of, score_corridor
 from peopleboy.scenarios.scores.drive_record import DriveLog, DriveRecord
 from peopleboy.scenarios.scores.episode_result import DriveScores, EpisodeResult
 from peopleboy.scenarios.scores.following_metrics import following_task, score_following, tracks_on_target
+from peopleboy.scenarios.scores.goal_metrics import goal_task, score_goal
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
@@ -241,7 +242,9 @@ def _score_drive(scenario: Scenario, config: WorldConfig, drive: DriveRecord) ->
         corridor = score_corridor(drive, legs_of(scenario.plan))
     if drive.has_moved and config.people:
         comfort = score_comfort(drive)
-    return DriveScores(following, corridor, comfort)
+    task_there = goal_task(scenario)
+    goal = None if task_there is None else score_goal(drive, task_there)
+    return DriveScores(goal, following, corridor, comfort)
 
 
 def save_episode(

@@ -1,7 +1,7 @@
 """Result of an episode of an environment, which a saved run repeats: scores, end, and rewards by step."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,17 +13,36 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
+from peopleboy.scenarios.scores.goal_metrics import GoalScore
 
 REWARDS: Final = "rewards.parquet"
 
 
 @dataclass(frozen=True, slots=True)
 class DriveScores:
-    """Scores of the robot's tasks; None for a task that it did not have."""
+    """Scores of the robot's tasks; None for a task that it did not have.
 
+    Attributes:
+        goal: scores of driving to a goal.
+        following: scores of following the first person in the scenario.
+        corridor: scores of corridor following.
+        comfort: comfort of the people around the robot, if it drove among people.
+    """
+
+    goal: GoalScore | None = None
     following: FollowingScore | None = None
     corridor: CorridorScore | None = None
     comfort: ComfortScore | None = None
+
+    @property
+    def groups(self) -> dict[str, GoalScore | FollowingScore | CorridorScore | ComfortScore]:
+        """The scores of the tasks that the robot had, by their group in metrics.json."""
+        groups = {name: getattr(self, name) for name in DRIVE_GROUPS}
+        return {name: score for name, score in groups.items() if score is not None}
+
+
+DRIVE_GROUPS: Final = tuple(field.name for field in fields(DriveScores))
+"""Groups of metrics.json on how the robot drove."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +54,7 @@ class EpisodeResult:
         scores: scores of the drive.
         terms: names of the reward's terms.
         rewards: (N, terms) terms of the reward of each step.
-        ended: "collision", "lost" or "time"; empty for an episode that goes on.
+        ended: "collision", "lost", "arrival" or "time"; empty for an episode that goes on.
     """
 
     task: str

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.contacts import Contact
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.episode_result import DriveScores
@@ -19,6 +18,7 @@ from peopleboy.scenarios.scores.evaluate_runs import (
     score_people,
 )
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
+from peopleboy.scenarios.scores.goal_metrics import GoalScore
 from peopleboy.sim.truth.truth import (
     COUNTED_FARTHEST_M,
     COUNTED_NEAREST_M,
@@ -36,9 +36,7 @@ class RunScores:
 
     Attributes:
         people: detection, localisation and identity; from the files of the run.
-        following: scores of following the first person in the scenario; None if the robot has no such task.
-        corridor: scores of corridor following; None if the robot has no such task.
-        comfort: comfort of the people around the robot; None if the robot did not drive among people.
+        drive: scores of the robot's tasks.
         further: scores of people in the images of further cameras for which the tracker returns boxes.
         by: ground-truth boxes that the scores of `people` refer to; None for squares on the floor.
         notes: caveats of the scores, one line each.
@@ -46,9 +44,7 @@ class RunScores:
     """
 
     people: Scores
-    following: FollowingScore | None
-    corridor: CorridorScore | None = None
-    comfort: ComfortScore | None = None
+    drive: DriveScores = field(default_factory=DriveScores)
     further: Mapping[str, Scores] = field(default_factory=dict)
     by: BoxReference | None = None
     notes: tuple[str, ...] = ()
@@ -62,10 +58,7 @@ class RunScores:
         """Return all metrics for JSON, with None for undefined values."""
         groups: dict[str, Any] = {} if self.by is None else {"scored_by": self.by.to_json()}
         groups |= to_json(self.people)
-        drives = {"following": self.following, "corridor": self.corridor, "comfort": self.comfort}
-        for group, score in drives.items():
-            if score is not None:
-                groups[group] = score.to_json()
+        groups |= {group: score.to_json() for group, score in self.drive.groups.items()}
         if self.contacts:
             groups["contacts"] = [contact.to_json() for contact in self.contacts]
         if self.further:
@@ -94,9 +87,7 @@ def score_run(
     further = sorted(path.stem for path in (folder / "tracks").glob("*.txt"))
     return RunScores(
         people.scores,
-        drive.following,
-        drive.corridor,
-        drive.comfort,
+        drive,
         {camera: scored(camera).scores for camera in further},
         people.by,
         people.notes,
@@ -112,10 +103,13 @@ _NEAR: Final = (
 def headline(scores: RunScores) -> str:
     """Summarise the task of the robot, then the detection of people."""
     parts = []
-    if scores.following is not None:
-        parts.append(_following(scores.following))
-    if scores.corridor is not None:
-        parts.append(_corridor(scores.corridor))
+    drive = scores.drive
+    if drive.goal is not None:
+        parts.append(_goal(drive.goal))
+    if drive.following is not None:
+        parts.append(_following(drive.following))
+    if drive.corridor is not None:
+        parts.append(_corridor(drive.corridor))
     parts.append(_people(scores.people))
     return " ".join(parts)
 
@@ -129,6 +123,16 @@ def _people(scores: Scores) -> str:
     return (
         f"People were found in {_percent(thesis.cr)} of {counts.targets} cases, {right}; "
         f"{_some(mot.clear.switches, 'identity switch', 'es')}, {false}."
+    )
+
+
+def _goal(score: GoalScore) -> str:
+    contacts = _some(score.contacts, "contact")
+    if not score.reached:
+        return f"The robot did not reach the goal: it came within {score.nearest_m:.1f} m; {contacts}."
+    return (
+        f"The robot reached the goal after {score.time_s:.1f} s and {score.path_m:.1f} m, "
+        f"SPL {score.spl:.2f}; {contacts}."
     )
 
 

@@ -9,6 +9,7 @@ ENVIRONMENTS: Final[Mapping[str, Mapping[str, str]]] = {
     "peopleboy/PersonFollowing-v0": {"scenario": "single_follow", "task": "follow"},
     "peopleboy/CorridorFollowing-v0": {"scenario": "corridor_straight", "task": "corridor"},
     "peopleboy/Patrol-v0": {"scenario": "patrol_corridor", "task": "patrol"},
+    "peopleboy/GoTo-v0": {"scenario": "go_to_foyer", "task": "go_to"},
 }
 """Each environment's scenario and task by its name."""
 

@@ -43,8 +43,11 @@ def environment_spaces() -> str:
     robot = load_scenario("single_follow").world(0).robot
     normaliser = Normaliser(robot)
     rows = []
-    for kind, keys in (("tracks", ("sonar", "odometry", "tracks")), ("pixels", ("thermal", "colour"))):
-        space = observation_space(kind, robot, tuple(robot.cameras))
+    for kind, keys in (
+        ("tracks", ("sonar", "odometry", "goal", "tracks")),
+        ("pixels", ("thermal", "colour")),
+    ):
+        space = observation_space(kind, robot, tuple(robot.cameras), has_goal=True)
         scaled = normaliser.space(space)
         rows += [(f"`{key}`", *_box(space, key), _limits(scaled, key)) for key in keys]
     return table(("key", "shape", "dtype", "low, high", "low, high with `normalise=True`"), rows)

@@ -7,6 +7,7 @@ from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.drive_record import ScoreRecord
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
+from peopleboy.scenarios.scores.goal_metrics import GoalScore
 from peopleboy.tracker.evaluation.table import FIGURES
 
 
@@ -30,6 +31,11 @@ def comfort() -> str:
     figures = ComfortScore.metrics().values()
     rows = [(f"**{one.name}**", one.unit or "count", sentence(one.meaning)) for one in figures]
     return table(("metric", "unit", "meaning"), rows)
+
+
+def goal() -> str:
+    """List the metrics of driving to a goal."""
+    return _driving(GoalScore)
 
 
 def following() -> str:

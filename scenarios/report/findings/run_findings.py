@@ -142,6 +142,15 @@ def headline(runs: Sequence[RunFindings]) -> str:
 
 def _task_findings(runs: Sequence[RunFindings]) -> Iterator[Finding]:
     """Yield how the robot fared with its task: the person that it followed, the corridor, and contacts."""
+    goals = [goal for run in runs if (goal := run.run.metrics.get("goal"))]
+    for kind, is_reached in (("reached", True), ("not reached", False)):
+        some = [goal for goal in goals if goal["reached"] == is_reached]
+        if some:
+            values = {
+                "time": seconds(some[0]["time_s"] or 0.0),
+                "distance": f"{some[0]['nearest_m']:.1f}\u00a0m",
+            }
+            yield Finding(kind, len(some), values | {"runs": counted(len(some), "run")})
     for kind in ("never found", "lost for good", "followed"):
         found = [run for run in runs if run.task_end == kind]
         if found:

@@ -31,6 +31,16 @@ AFTERWARDS: Final = {
 
 # Parts of a headline: for one finding in one run, for several in one run, and for several runs.
 HEADLINES: Final = {
+    "reached": (
+        "The robot reached its goal after {time}",
+        "The robot reached its goal after {time}",
+        "the robot reached its goal in {runs}",
+    ),
+    "not reached": (
+        "The robot did not reach its goal, but came within {distance} of it",
+        "The robot did not reach its goal, but came within {distance} of it",
+        "the robot did not reach its goal in {runs}",
+    ),
     "never found": (
         "The robot never found {person}",
         "The robot never found {person}",

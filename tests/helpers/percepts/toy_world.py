@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.behaviours.behaviour import STOP, Behaviour, Command
 from peopleboy.behaviours.percept import Percept, SeenPerson
+from peopleboy.geometry.pose2 import Pose2
 
 Array = NDArray[np.float64]
 STEP_S = 1.0 / 15.0
@@ -121,6 +122,7 @@ class Toy:
             sonar_angle_rad=SONAR_ANGLE,
             linear_m_s=self.speed,
             angular_rad_s=self.turn,
+            odometry=Pose2(*self.pose.tolist()),
         )
 
     def is_contact(self) -> bool:

@@ -72,6 +72,22 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d.update(robot={"at_m": [1.0, 0.0], "behaviour": "scripted"}),
         ("robot.commands: a scripted robot needs at least one", "or use behaviour 'stand'"),
     ),
+    "a drive to no goal": (
+        lambda d: d["robot"].update(behaviour="go_to"),
+        ("robot.goal_m: behaviour 'go_to' needs one, such as [6.0, 1.5]",),
+    ),
+    "a goal in a table": (
+        lambda d: d["robot"].update(goal_m=[6.0, -1.5]),
+        ("robot.goal_m: (6, -1.5) is in or within 0.27 m of 'table_1'; move it away",),
+    ),
+    "a goal without a way": (
+        lambda d: d.update(
+            things=[{"kind": "block", "at_m": [4.0, 0.0], "size_m": [0.3, 5.8, 2.0]}],
+            people=[],
+            robot={"at_m": [1.0, 0.0], "goal_m": [6.0, 0.0]},
+        ),
+        ("robot.goal_m: no gap of 0.54 m leads the robot from (1, 0) to (6, 0)",),
+    ),
     "a tracker of one's own": (
         lambda d: d["robot"].update(tracker="mine:Mine"),
         ("robot.tracker: 'mine:Mine' is your own class", "--tracker mine:Mine"),

@@ -56,7 +56,7 @@ def finished(request, tmp_path_factory):
     )
     scores = run(scenario, RunOptions(seed=0, out=folder, tracker="truth", record=False), lambda *_: None)
     events = [json.loads(line) for line in (folder / "events.jsonl").read_text().splitlines()]
-    return request.param, pq.read_table(folder / "robot.parquet").to_pydict(), events, scores.following
+    return request.param, pq.read_table(folder / "robot.parquet").to_pydict(), events, scores.drive.following
 
 
 @pytest.mark.slow
@@ -112,8 +112,8 @@ def test_a_robot_goes_on_when_the_images_come_back(tmp_path):
     )
     options = RunOptions(seed=1, out=tmp_path / "run", tracker="truth", record=False)
     scores = run(scenario, options, lambda *_: None)
-    assert scores.following is not None
-    assert scores.following.followed_to_end
+    assert scores.drive.following is not None
+    assert scores.drive.following.followed_to_end
     lines = [json.loads(line) for line in (tmp_path / "run" / "events.jsonl").read_text().splitlines()]
     told = [(line["kind"], line["time_s"]) for line in lines if line["who"] == "camera_frozen"]
     assert told == [("fault starts", pytest.approx(5.0)), ("fault ends", pytest.approx(5.6, abs=0.1))]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.episode_result import DriveScores
 from peopleboy.scenarios.scores.following_metrics import score_following
 from peopleboy.scenarios.scores.run_scores import RunScores, headline
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
@@ -38,8 +39,8 @@ def test_who_counts_is_said_where_nobody_does(tmp_path: Path) -> None:
     scores = scores_of(tmp_path, 200)
     (tmp_path / "gt.txt").write_text("1,1,10,10,20,60,0,1,1.0\n")
     nobody = evaluate(read_truth(tmp_path / "gt.txt"), read_tracks(tmp_path / "tracks.txt"), frames=200)
-    assert "3 to 10 m" in headline(RunScores(nobody, None))
-    assert "3 to 10 m" not in headline(RunScores(scores, None))
+    assert "3 to 10 m" in headline(RunScores(nobody))
+    assert "3 to 10 m" not in headline(RunScores(scores))
 
 
 @pytest.mark.parametrize(
@@ -52,7 +53,7 @@ def test_who_counts_is_said_where_nobody_does(tmp_path: Path) -> None:
     ],
 )
 def test_all_means_all_and_none_means_none(found: int, false: int, clues: list[str], tmp_path: Path) -> None:
-    text = headline(RunScores(scores_of(tmp_path, found, false), None))
+    text = headline(RunScores(scores_of(tmp_path, found, false)))
     assert [clue for clue in clues if clue not in text] == []
 
 
@@ -67,14 +68,18 @@ def test_who_follows_somebody_else_is_told_so(tmp_path: Path) -> None:
         is_wrong=np.arange(30) < 12,
     )
     assert "followed another person for 0.8 s; no contact" in headline(
-        RunScores(people, score_following(run))
+        RunScores(people, DriveScores(following=score_following(run)))
     )
     right = dataclasses.replace(run, is_wrong=still)
-    assert "to the end; no contact" in headline(RunScores(people, score_following(right)))
+    assert "to the end; no contact" in headline(
+        RunScores(people, DriveScores(following=score_following(right)))
+    )
 
 
 def test_a_corridor_without_a_straight_leg_says_nothing_of_its_middle(tmp_path: Path) -> None:
     people = scores_of(tmp_path, 200)
-    assert "lateral error of 0.05 m RMS; no contact" in headline(RunScores(people, None, CORRIDOR))
+    assert "lateral error of 0.05 m RMS; no contact" in headline(
+        RunScores(people, DriveScores(corridor=CORRIDOR))
+    )
     bent = dataclasses.replace(CORRIDOR, lateral_rms_m=math.nan, contacts=2)
-    assert "0.50 m/s; 2 contacts" in headline(RunScores(people, None, bent))
+    assert "0.50 m/s; 2 contacts" in headline(RunScores(people, DriveScores(corridor=bent)))
