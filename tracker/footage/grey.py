@@ -33,6 +33,15 @@ LEAST: Final = 0.01
 OUTLIERS: Final = 0.05
 """Share of clipped pixels, such as lamps and heaters."""
 
+COARSE_PX: Final = 24.0
+"""Standard deviation of the neighbourhood in a reduced picture, in which it is computed."""
+
+_MIDDLE: Final = 128.0
+"""Grey of the mean of the neighbourhood."""
+
+SAMPLED_ROWS: Final = 170
+"""Least number of rows, evenly spread, whose pixels enter the statistics of the whole picture."""
+
 
 def local_grey(values: Values) -> "Grey":
     """Normalise each pixel by mean and standard deviation of its neighbourhood.
@@ -44,15 +53,19 @@ def local_grey(values: Values) -> "Grey":
         values: (H, W) in any unit; warmer is larger.
 
     Returns:
-        (H, W), 128 for the mean of the neighbourhood.
+        (H, W), `_MIDDLE` for the mean of the neighbourhood.
     """
-    values = values - np.float32(np.median(values))  # so that rounding does not grow with the offset
-    away = values - _around(values)
+    every = max(values.shape[0] // SAMPLED_ROWS, 1)
+    few = values[::every, ::every]
+    away = values - np.float32(np.median(few))  # so that rounding does not grow with the offset
+    away -= _around(away)
     square = np.square(away)
-    square = np.minimum(square, np.float32(np.percentile(square, 100.0 * (1.0 - OUTLIERS))))
-    deviation = np.maximum(np.sqrt(_around(square)), np.float32(_least_deviation(values)))
-    grey = 128.0 + np.float32(GREYS) * away / deviation
-    return np.asarray(np.clip(np.rint(grey), 0, 255), np.uint8)
+    most = np.percentile(square[::every, ::every], 100.0 * (1.0 - OUTLIERS))
+    np.minimum(square, np.float32(most), out=square)
+    deviation = np.sqrt(_around(square))
+    np.maximum(deviation, np.float32(_least_deviation(values[::every], few)), out=deviation)
+    contrast = cv2.divide(away, deviation, scale=GREYS)
+    return np.asarray(cv2.add(contrast, (_MIDDLE,), dtype=cv2.CV_8U), np.uint8)  # rounds and clips
 
 
 def noise_of(values: Values) -> float:
@@ -61,13 +74,20 @@ def noise_of(values: Values) -> float:
     return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(6.0))
 
 
-def _least_deviation(values: Values) -> float:
-    low, high = np.percentile(values, [1, 99])
-    return max(NOISE * noise_of(values), LEAST * float(high - low), 1e-6)
+def _least_deviation(rows: Values, few: Values) -> float:
+    """Return the least standard deviation of a neighbourhood, from some rows, and from a sample of them."""
+    low, high = np.percentile(few, [1, 99])
+    return max(NOISE * noise_of(rows), LEAST * float(high - low), 1e-6)
 
 
-def _around(values: Values) -> NDArray[Any]:
-    return cv2.GaussianBlur(values, (0, 0), AROUND * values.shape[0])
+def _around(values: Values) -> Values:
+    """Return the Gaussian mean about each pixel (H, W), which is so smooth that a reduced picture has it."""
+    rows, columns = values.shape
+    sigma_px = AROUND * rows
+    by = max(sigma_px / COARSE_PX, 1.0)
+    size = max(round(columns / by), 1), max(round(rows / by), 1)
+    mean = cv2.GaussianBlur(cv2.resize(values, size, interpolation=cv2.INTER_AREA), (0, 0), sigma_px / by)
+    return np.asarray(cv2.resize(mean, (columns, rows)), np.float32)
 
 
 Grey = NDArray[np.uint8]
