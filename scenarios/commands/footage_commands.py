@@ -1,8 +1,10 @@
 """Commands for recorded images and imported tracks: `track`, `import-tracks`, `sim-to-real`."""
 
+import time
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,6 +15,7 @@ from peopleboy.scenarios.commands.command_options import (
     FieldsCommand,
     GivenOptions,
     Output,
+    PlainPath,
     WholeNumber,
     options_of,
     output_options,
@@ -23,9 +26,10 @@ from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.finished_runs.import_tracks import TrackImport
-    from peopleboy.scenarios.footage.options import RgbdCamera, RgbdOptions, TrackOptions
-    from peopleboy.scenarios.footage.track_footage import Tracked
+    from peopleboy.scenarios.footage.options import RawOptions, RgbdCamera, RgbdOptions, TrackOptions
+    from peopleboy.scenarios.footage.track_footage import ShowTracks, Tracked
     from peopleboy.tracker.footage.grey import Radiometry
+    from peopleboy.tracker.footage.live_footage import LiveSource
 
 
 _TRACKERS = (
@@ -34,9 +38,24 @@ _TRACKERS = (
 )
 
 
+class _Footage(PlainPath):
+    """A path as `PlainPath`, or a live source, as text."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        from peopleboy.tracker.footage.live_footage import is_live
+
+        return value if is_live(value) else str(super().convert(value, param, ctx))
+
+
 @click.command(cls=FieldsCommand)
-@click.argument("footage", metavar="FOLDER|TIFF|VIDEO", type=PATH)
+@click.argument("footage", metavar="FOLDER|TIFF|VIDEO|CAMERA|STREAM|-", type=_Footage())
 @options_of("scenarios.footage.options:TrackOptions", "out", "colour", into="files")
+@options_of("scenarios.footage.options:RawOptions", "size", "pixels", into="raw")
+@click.option(
+    "--live",
+    is_flag=True,
+    help="Show images and tracks in the rerun viewer while tracking; without a display, on a local web page.",
+)
 @options_of("tracker.footage.grey:Radiometry", "span_c", "is_inverted", into="thermal")
 @click.option(
     "--scale",
@@ -68,8 +87,10 @@ _TRACKERS = (
 )
 @output_options
 def track(
-    footage: Path,
+    footage: str,
     files: "GivenOptions[TrackOptions]",
+    raw: "GivenOptions[RawOptions]",
+    live: bool,
     thermal: "GivenOptions[Radiometry]",
     scale: str | None,
     rgbd: "GivenOptions[RgbdOptions]",
@@ -79,32 +100,75 @@ def track(
     start: str | None,
     output: Output,
 ) -> None:
-    """Track people in recorded thermal images or in a video.
+    """Track people in recorded thermal images, in a video, or in the images of a live camera.
 
     FOLDER contains PNG, TIFF, JPEG or BMP images with 8 or 16 bits. The command writes tracks.txt
     (MOTChallenge), tracks.parquet, run.json, contact_sheet.png and, if there is ground truth, metrics.json.
     If temperatures are unknown, grey levels are stretched to the contrast of the scene.
 
+    CAMERA is a number, such as 0, or a device, such as /dev/video0. STREAM is an address, such as
+    rtsp://camera/stream. With -, encoded video or, with --size and --pixels, raw images are read from
+    standard input. The tracks of live images are also printed as JSON, one line per image. Images that come
+    while one is processed are dropped. Ctrl-C ends the tracking, and the files are written.
+
     With --depth and --depth-scale, people are tracked in colour and depth images, and tracks.parquet contains
     their floor positions.
     """
     from peopleboy.scenarios.footage.options import RGBD_TRACKER, parse_start
-    from peopleboy.scenarios.footage.track_footage import track_footage
-    from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.tracker.footage.grey import parse_scale
 
     usual = DEFAULT_TRACKER if rgbd.depth is None else RGBD_TRACKER
     tracker = usual if given.tracker is None else given.tracker
+    source = _source(footage, raw)
     options = given.make(
-        footage=footage,
-        **files.values,
+        footage=source,
+        **{**files.values, "out": files.out or _default_out(source)},
         radiometry=thermal.make(scale=None if scale is None else parse_scale(scale)),
         rgbd=_rgbd(rgbd, camera),
         tracker=with_detector(tracker, detector),
         start=None if start is None else parse_start(start),
     )
-    with progress_bar(footage.name, unit="frames") as show:
-        tracked = track_footage(options, lambda frame, expected: show(frame, max(expected, frame)))
+    _track(options, output, is_shown=live)
+
+
+def _source(footage: str, raw: "GivenOptions[RawOptions]") -> "Path | LiveSource":
+    from peopleboy.tracker.footage.live_footage import LiveSource, is_live
+
+    layout = raw.make().layout()
+    if is_live(footage):
+        return LiveSource(footage, layout)
+    if layout is not None:
+        raise BadInput(f"{footage}: --size and --pixels are for raw images on standard input; give - for it")
+    return Path(footage)
+
+
+def _default_out(source: "Path | LiveSource") -> Path:
+    if isinstance(source, Path):
+        raise click.MissingParameter(param_type="option", param_hint="--out")
+    return Path("runs") / time.strftime("live-%Y%m%d-%H%M%S")
+
+
+def _track(options: "TrackOptions", output: Output, *, is_shown: bool) -> None:
+    """Track, show the tracks on the way as asked for, and print a summary."""
+    from peopleboy.scenarios.footage.track_footage import track_footage
+    from peopleboy.scenarios.footage.track_lines import TrackLines
+    from peopleboy.scenarios.progress_bar import progress_bar
+    from peopleboy.scenarios.recording.recording_file import check_installed
+
+    if options.path is None and output.as_json:
+        raise BadInput("--json: tracks of a live source are printed as JSON anyway; leave it out")
+    if is_shown:
+        check_installed("--live")
+    with ExitStack() as stack:
+        shows: list[ShowTracks] = []
+        if options.path is None and output.is_text:
+            shows.append(TrackLines(options.camera).show)
+        if is_shown:
+            from peopleboy.scenarios.recording.live_tracks import live_tracks
+
+            shows.append(stack.enter_context(live_tracks(print_note, options.camera)))
+        report = stack.enter_context(progress_bar(options.name, unit="frames"))
+        tracked = track_footage(options, lambda frame, expected: report(frame, max(expected, frame)), shows)
     _print(tracked, options, output)
 
 
@@ -130,7 +194,7 @@ def _print(tracked: "Tracked", options: "TrackOptions", output: Output) -> None:
         if tracked.scores is not None:
             print_scores(tracked.scores)
         for line in outcome_lines(tracked, options):
-            click.echo(line)
+            click.echo(line, err=options.path is None)
 
     metrics = {} if tracked.scores is None else {"metrics": to_json(tracked.scores)}
     output.results(lambda: {"out": str(options.out), "notes": list(tracked.notes)} | metrics, show)

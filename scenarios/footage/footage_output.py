@@ -126,8 +126,8 @@ class FootageLog:
 
     def __init__(self, folder: Path, options: TrackOptions, views: Views, truth: GivenTruth | None) -> None:
         self._folder, self._views, self._truth = folder, views, truth
-        self._sheet = Sheet(options.footage.resolve().name, has_truth=truth is not None)
-        self._means = f"at {views.rate_hz:g} Hz, tracker {options.shown_tracker}"
+        self._sheet = Sheet(options.name, has_truth=truth is not None)
+        self._tracker = options.shown_tracker
         self._stack = ExitStack()
         self._film: FilmWriter | None = None
         if options.video:
@@ -186,7 +186,8 @@ class FootageLog:
     def finish(self) -> Scores | None:
         """Write tables, contact sheet and scores."""
         self._table.close()
-        length = f"{counted(self.frames, 'frame')} {self._means}"
+        rate = f"at {self._views.rate_hz:.3g} Hz"
+        length = f"{counted(self.frames, 'frame')} {rate}, tracker {self._tracker}"
         self._sheet.save(self._folder / "contact_sheet.png", length)
         if self._truth is None:
             return None

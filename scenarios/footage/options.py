@@ -16,6 +16,8 @@ from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.evaluation.protocols import Protocol
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import Radiometry
+from peopleboy.tracker.footage.live_footage import LiveSource, PixelFormat, RawFormat, parse_size
+from peopleboy.tracker.frame import DEPTH, THERMAL
 from peopleboy.tracker.tracker_names import is_detection_file, shown_name, split_name
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
@@ -118,19 +120,48 @@ class RgbdOptions:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RawOptions:
+    """Layout of raw images on standard input."""
+
+    size: Annotated[
+        str | None,
+        Field(description="Width and height of raw images on standard input, such as 640x512."),
+        Metavar("WxH"),
+    ] = None
+    pixels: Annotated[
+        PixelFormat | None, Field(description="Pixel format of raw images on standard input, as in FFmpeg.")
+    ] = None
+
+    def layout(self) -> RawFormat | None:
+        """Return the layout; None if the input is not raw.
+
+        Raises:
+            BadInput: only one of the two is given, or the size is invalid.
+        """
+        if self.size is None and self.pixels is None:
+            return None
+        if self.size is None or self.pixels is None:
+            raise BadInput("--size and --pixels describe raw images together; give both, or none")
+        return RawFormat(parse_size(self.size), self.pixels)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class TrackOptions:
     """Options of tracking people in footage.
 
     Attributes:
-        footage: folder of images or a video, thermal; with `rgbd`, a folder of colour images.
+        footage: folder of images, a video or a live source, thermal; with `rgbd`, a folder of colour images.
         radiometry: meaning of thermal pixel values.
         rgbd: depth images of the same view; None for thermal footage.
         start: initial box of a person in the first image, or "truth" for the ground truth's; None to detect
             people.
     """
 
-    footage: Path
-    out: Annotated[Path, Field(description="Output folder.")]
+    footage: Path | LiveSource
+    out: Annotated[
+        Path,
+        Field(description="Output folder.  [default: runs/live-TIME for a live source, otherwise required]"),
+    ]
     colour: Annotated[
         Path | None,
         Field(description="Folder of colour images, one per thermal image."),
@@ -179,6 +210,35 @@ class TrackOptions:
     video: Annotated[bool, Field(description="Also write overlay.mp4; needs the package av.")] = False
     overwrite: Annotated[bool, Field(description="Replace an earlier run in the output folder.")] = False
 
+    def __post_init__(self) -> None:
+        """Refuse what a live source cannot have."""
+        if not isinstance(self.footage, LiveSource):
+            return
+        for option, value in (
+            ("--colour", self.colour),
+            ("--depth", self.rgbd),
+            ("--timestamps", self.timestamps),
+            ("--truth", self.truth),
+            ("--start", self.start),
+        ):
+            if value is not None:
+                raise BadInput(f"{option}: not for the live source {self.footage.name}; leave it out")
+
+    @property
+    def name(self) -> str:
+        """Name of the folder, the file or the live source."""
+        return self.footage.name if isinstance(self.footage, LiveSource) else self.footage.resolve().name
+
+    @property
+    def camera(self) -> str:
+        """Name of the camera in whose image boxes are."""
+        return THERMAL if self.rgbd is None else DEPTH
+
+    @property
+    def path(self) -> Path | None:
+        """Path of the footage; None for a live source."""
+        return None if isinstance(self.footage, LiveSource) else self.footage
+
     @property
     def shown_tracker(self) -> str:
         """Name of the tracker as reports show it."""
@@ -190,7 +250,7 @@ class TrackOptions:
         depth = () if self.rgbd is None else (self.rgbd.depth, self.rgbd.odometry)
         detector = split_name(self.tracker)[1]
         detections = Path(detector) if detector is not None and is_detection_file(detector) else None
-        paths = (self.footage, self.colour, self.truth, *depth, detections)
+        paths = (self.path, self.colour, self.truth, *depth, detections)
         return tuple(path for path in paths if path is not None)
 
 

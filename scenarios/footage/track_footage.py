@@ -1,8 +1,12 @@
 """Run a tracker over footage, write a folder like that of a run, and summarise the result."""
 
+import signal
+import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from types import FrameType
 from typing import Any, Final
 
 from peopleboy.bad_input import BadInput
@@ -18,8 +22,9 @@ from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.latency import write_latency
 from peopleboy.tracker.footage.box_kinds import BoxKind, torso_of
 from peopleboy.tracker.footage.footage_truth import GivenTruth, doubts, find_truth, load_truth
-from peopleboy.tracker.frame import DEPTH, THERMAL
+from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
 from peopleboy.tracker.reproductions.contour.variants import VARIANTS
+from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Introducible, Tracker, explanation_of, is_own, make_tracker
 from peopleboy.wording import counted
 
@@ -45,12 +50,23 @@ class Tracked:
     boxes: BoxKind | None
 
 
-def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> Tracked:
+ShowTracks = Callable[[int, Frame, Sequence[Track]], bool]
+"""Shows the tracks of an image, with its number, and returns whether the reader has closed it."""
+
+
+def track_footage(
+    options: TrackOptions,
+    report: Callable[[int, int], None],
+    shows: Sequence[ShowTracks] = (),
+) -> Tracked:
     """Track people in footage and write the output folder atomically.
+
+    A live source ends with Ctrl-C as if it had ended by itself.
 
     Args:
         options: options of the tracking.
         report: called after each image with its number and the expected number of images.
+        shows: called after each image; if one is closed, a live source ends.
 
     Raises:
         BadInput: footage, ground truth or an option is invalid, or the tracker returned an invalid value;
@@ -74,21 +90,45 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
         atomic_folder(options.out, about, overwrite=options.overwrite, kind="run") as folder,
     ):
         log = FootageLog(folder, options, views, truth)
-        with log:
+        with log, _stopped_by_interrupt(views):
             for frame in views:
                 with at_frame(log.frames + 1):
                     tracks = tracker.update(frame)
                     explanation = explanation_of(tracker)
                 log.add(frame, tracks, explanation)
+                closed = [show(log.frames, frame, tracks) for show in shows]
+                if any(closed) and views.stop is not None:
+                    views.stop()
                 times.append(time.perf_counter())
                 report(log.frames, views.expected)
         scores = log.finish()
         write_latency(folder, tracker.times_ms)
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
+        about["rate_hz"] = views.rate_hz  # of a live source, known by now
         if truth is not None:
             about["protocol"] = truth.protocol
         about["notes"] = notes = [*views.notes, *_notes_on(truth, log.size)]
     return Tracked(log.frames, pictures_a_second(times), log.tracks, scores, tuple(notes), kind)
+
+
+@contextmanager
+def _stopped_by_interrupt(views: Views) -> Iterator[None]:
+    """Let Ctrl-C stop a live source after the present image; a second one interrupts."""
+    if views.stop is None or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.getsignal(signal.SIGINT)
+
+    def stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
+        signal.signal(signal.SIGINT, before)
+        if views.stop is not None:
+            views.stop()
+
+    signal.signal(signal.SIGINT, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def pictures_a_second(times_s: Sequence[float]) -> float:
@@ -109,7 +149,9 @@ def _check_apart(options: TrackOptions) -> None:
 
 
 def _truth_of(options: TrackOptions, views: Views) -> GivenTruth | None:
-    path = options.truth if options.truth is not None else find_truth(options.footage)
+    path = options.truth
+    if path is None and options.path is not None:
+        path = find_truth(options.path)
     if path is None:
         if options.start == "truth":
             raise BadInput(f"--start truth: {options.footage} has no ground truth; give --truth FILE")
@@ -164,7 +206,7 @@ def _lack(camera: str, options: TrackOptions) -> str:
 def _about(options: TrackOptions, views: Views) -> dict[str, Any]:
     return {
         "status": "complete",
-        "footage": options.footage.name,
+        "footage": options.name,
         "tracker": options.shown_tracker,
         "seed": options.seed,
         "rate_hz": views.rate_hz,

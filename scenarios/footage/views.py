@@ -1,6 +1,6 @@
 """Read footage of any kind as frames: thermal with optional colour, or colour with depth."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -21,6 +21,7 @@ from peopleboy.scenarios.footage.options import (
 from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
 from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.footage.image_sequences import Footage, PictureFolder, folders_in, open_footage
+from peopleboy.tracker.footage.live_footage import LiveFootage, LiveSource
 from peopleboy.tracker.footage.picture_names import offsets_of, pictures_in
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
 from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, rate_in
@@ -44,6 +45,7 @@ class RgbdViews:
     camera = DEPTH
     cameras: tuple[str, ...] = (DEPTH, DEPTH_COLOUR)
     is_exact = True
+    stop: Callable[[], None] | None = None
 
     def __init__(self, options: TrackOptions, rgbd: RgbdOptions) -> None:
         _check_kind(options)
@@ -165,7 +167,8 @@ def _check_kind(options: TrackOptions) -> None:
 
 def _folders(options: TrackOptions, rgbd: RgbdOptions) -> tuple[tuple[Path, str], tuple[Path, str]]:
     """Return both folders, each with the name of its images in a run."""
-    return (options.footage, DEPTH_COLOUR), (rgbd.depth, DEPTH)
+    assert options.path is not None  # `TrackOptions` refuses depth with a live source
+    return (options.path, DEPTH_COLOUR), (rgbd.depth, DEPTH)
 
 
 def _folder(path: Path, image: str, depth: Path) -> PictureFolder:
@@ -189,7 +192,7 @@ COLOUR_TRACKER: Final = "colour"
 
 
 class ThermalViews:
-    """Thermal images of a folder or a video.
+    """Thermal images of a folder, a video or a live source.
 
     Raises:
         BadInput: the images cannot be read, or the tracker needs colour and there is none.
@@ -205,7 +208,13 @@ class ThermalViews:
         self._images = ThermalImages(
             options.radiometry, by_contrast=uses_contrast(options.tracker), where=str(options.footage)
         )
-        self._footage = open_footage(options.footage)
+        self._footage: Footage
+        self.stop: Callable[[], None] | None = None
+        if isinstance(options.footage, LiveSource):
+            self._footage = live = LiveFootage(options.footage, options.rate_hz)
+            self.stop = live.stop
+        else:
+            self._footage = open_footage(options.footage)
         self._colour = None if options.colour is None else open_footage(options.colour)
         self._pair_up()
         names = [path.name for path in paths] if (paths := _paths_of(self._footage)) else None
@@ -236,12 +245,14 @@ class ThermalViews:
 
     def _time_s(self, number: int) -> float:
         """Return the time of an image, from 0: that of its time stamp, or an even one, with gaps."""
-        own = self._footage.times_s if self._options.rate_hz is None else None
+        is_own = self._options.rate_hz is None or isinstance(self._footage, LiveFootage)
+        own = self._footage.times_s if is_own else None
         return _moment(self._options, self._times_s or own, self._offsets, number, self.rate_hz)
 
     def _given_rate(self) -> float | None:
         """Read the frame rate from a file beside the images."""
-        path = find_info(self._options.footage)
+        footage = self._options.path
+        path = None if footage is None else find_info(footage)
         rate = None if path is None else rate_in(path)
         if rate is not None:
             self._footage.notes.append(
@@ -266,6 +277,8 @@ class ThermalViews:
                 check_start(thermal, self._options)
             colour = None if picture is None else colour_picture(picture, "--colour")
             yield self._images.frame(thermal, self._time_s(number), colour)
+        if isinstance(self._footage, LiveFootage):
+            self.rate_hz = _rate_of(self._footage.times_s) or self.rate_hz
 
     def _pictures(self) -> Iterator[tuple[NDArray[Any], NDArray[Any] | None]]:
         here, there = self._options.footage, self._options.colour
@@ -301,7 +314,8 @@ class Views(Protocol):
         expected: expected number of frames; a damaged video has fewer.
         is_exact: whether `expected` is exact.
         numbers: numbers in the images' file names, in order; None if there are none.
-        rate_hz: frames per second.
+        rate_hz: frames per second; those of a live source are known after reading.
+        stop: ends reading after the present frame; None if only the footage ends it.
     """
 
     camera: str
@@ -310,6 +324,7 @@ class Views(Protocol):
     is_exact: bool
     numbers: range | None
     rate_hz: float
+    stop: Callable[[], None] | None
 
     @property
     def notes(self) -> list[str]:

@@ -2,8 +2,8 @@
 
 import uuid
 import weakref
-from collections.abc import Callable
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 
 import numpy as np
 import rerun as rr
@@ -15,6 +15,26 @@ from peopleboy.scenarios.recording.viewer import live_viewer
 
 _QUALITY = 75  # JPEG quality
 _SCENE, _REWARD, _EPISODES = "scene", "reward", "episodes"
+
+
+@contextmanager
+def live_stream(say: Callable[[str], None], layout: rrb.Blueprint) -> Iterator[rr.RecordingStream]:
+    """Open a viewer, a window or, without a display, a page; yield the stream that it shows.
+
+    Args:
+        say: called with the page's address.
+        layout: of the viewer.
+
+    Raises:
+        BadInput: the viewer fails.
+    """
+    with live_viewer(say, is_left_open=False) as source:
+        stream = rr.RecordingStream(APPLICATION, recording_id=uuid.uuid4())
+        stream.set_sinks(rr.GrpcSink(source), default_blueprint=layout)
+        try:
+            yield stream
+        finally:
+            stream.disconnect()
 
 
 class LivePicture:
@@ -34,10 +54,7 @@ class LivePicture:
         self._time_s = 0.0
         self._earned = 0.0
         with ExitStack() as stack:
-            source = stack.enter_context(live_viewer(say, is_left_open=False))
-            self._stream = rr.RecordingStream(APPLICATION, recording_id=uuid.uuid4())
-            self._stream.set_sinks(rr.GrpcSink(source), default_blueprint=_lay_out())
-            stack.callback(self._stream.disconnect)
+            self._stream = stack.enter_context(live_stream(say, _lay_out()))
             self._end = weakref.finalize(self, stack.pop_all().close)
 
     def begin(self, picture: NDArray[np.uint8], words: str) -> None:

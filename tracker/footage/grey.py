@@ -64,8 +64,7 @@ def local_grey(values: Values) -> "Grey":
     np.minimum(square, np.float32(most), out=square)
     deviation = np.sqrt(_around(square))
     np.maximum(deviation, np.float32(_least_deviation(values[::every], few)), out=deviation)
-    contrast = cv2.divide(away, deviation, scale=GREYS)
-    return np.asarray(cv2.add(contrast, (_MIDDLE,), dtype=cv2.CV_8U), np.uint8)  # rounds and clips
+    return _whole_grey(np.asarray(_MIDDLE + GREYS * away / deviation, np.float32))
 
 
 def noise_of(values: Values) -> float:

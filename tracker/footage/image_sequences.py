@@ -41,7 +41,7 @@ class Footage(Protocol):
     """A sequence of pictures of one size.
 
     Attributes:
-        name: the folder's, or the file's without its suffix.
+        name: the folder's, the file's without its suffix, or that of a live source.
         rate_hz: frame rate; None if unknown.
         expected: expected number of pictures; a damaged video has fewer.
         is_exact: whether that number is exact.
@@ -244,15 +244,30 @@ class Video:
         )
 
     def _open(self) -> cv2.VideoCapture:
-        # Hides FFmpeg's own messages about damaged files; OpenCV reads the variable when opening.
-        os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
-        film = cv2.VideoCapture(str(self.path))
-        if not film.isOpened() or _code(film, cv2.CAP_PROP_FOURCC) == _TEXT:  # FFmpeg draws text files
-            raise BadInput(
-                f"{self.path}: cannot be read as a video: damaged, or of a codec that OpenCV lacks; "
-                "a folder of pictures always works"
-            )
-        return film
+        return open_capture(
+            str(self.path),
+            f"{self.path}: cannot be read as a video: damaged, or of a codec that OpenCV lacks; "
+            "a folder of pictures always works",
+        )
+
+
+def open_capture(source: str | int, otherwise: str) -> cv2.VideoCapture:
+    """Open a video, a stream or a camera.
+
+    Args:
+        source: path, address, or number of a camera.
+        otherwise: message if it cannot be opened.
+
+    Raises:
+        BadInput: it cannot be opened.
+    """
+    # Hides FFmpeg's own messages about damaged files; OpenCV reads the variable when opening.
+    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # and those of OpenCV
+    film = cv2.VideoCapture(source)
+    if not film.isOpened() or _code(film, cv2.CAP_PROP_FOURCC) == _TEXT:  # FFmpeg draws text files
+        raise BadInput(otherwise)
+    return film
 
 
 def describe_sizes(path: Path) -> str:
