@@ -7,13 +7,14 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from peopleboy.scenarios.drawing.palette import track_colour
-from peopleboy.scenarios.footage.track_footage import ShowTracks
 from peopleboy.scenarios.recording.live_picture import live_stream
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track, confirmed
 
 _QUALITY = 75  # JPEG quality
 _CAMERA, _TRACKS = "camera", "camera/tracks"
+
+ShowTracks = Callable[[int, Frame, Sequence[Track]], bool]
 
 
 @contextmanager

@@ -145,7 +145,7 @@ class LiveSource:
             return open_capture(_PIPE, f"{self.name}: cannot be read as a video; {advice}")
         where = int(self.address) if _NUMBER.fullmatch(self.address) else self.address
         return open_capture(
-            where, f"{self.name}: cannot be opened; is it connected, and used by no one else?"
+            where, f"{self.name}: cannot be opened; is it connected, and not in use by another program?"
         )
 
 
