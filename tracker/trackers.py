@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from peopleboy.geometry.camera_calibration import Calibration
     from peopleboy.tracker.frame import Frame
     from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
+    from peopleboy.tracker.reproductions.contour.single_filter import SingleFilter
     from peopleboy.tracker.sensors.own_detector import ImageDetector
     from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
     from peopleboy.tracker.track import Box, Track
@@ -92,6 +93,13 @@ def _contour_tracker(name: str, rng: "np.random.Generator") -> "ContourTracker":
     from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 
     return ContourTracker(VARIANTS[name], rng)
+
+
+def _single_filter(name: str, rng: "np.random.Generator") -> "SingleFilter":
+    from peopleboy.tracker.reproductions.contour.single_filter import SingleFilter
+    from peopleboy.tracker.reproductions.contour.variants import VARIANTS
+
+    return SingleFilter(VARIANTS[name], rng)
 
 
 def _thermal_sensor(
@@ -173,6 +181,25 @@ def _colour(rng: "np.random.Generator") -> Tracker:
 )
 def _paper(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("paper", rng)
+
+
+@TRACKERS.register(
+    "thesis-single",
+    scope="thesis, chapter 4",
+    summary="Tracks one person at a time with one particle filter, in the thermal image only. The filter "
+    "always runs, and a person counts as detected while it fits.",
+)
+def _thesis_single(rng: "np.random.Generator") -> Tracker:
+    return _single_filter("thesis-single", rng)
+
+
+@TRACKERS.register(
+    "paper-single",
+    scope="the 2005 paper, tables 1 to 3",
+    summary="Like `thesis-single`, with the measurement model of the paper and its best 30 % of the samples.",
+)
+def _paper_single(rng: "np.random.Generator") -> Tracker:
+    return _single_filter("paper-single", rng)
 
 
 @TRACKERS.register(

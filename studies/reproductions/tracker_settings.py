@@ -11,28 +11,31 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.reproductions.contour.contour_config import (
     DepthOrderConfig,
     HeightConfig,
-    InteractionConfig,
     StayBehindConfig,
     TrackerConfig,
 )
 from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.reproductions.contour.single_filter import SingleFilter
 from peopleboy.tracker.reproductions.contour.variants import (
     CONTOUR,
     PAPER,
     THESIS,
     THESIS_COLOUR,
     THESIS_OCCLUSION,
+    VARIANTS,
 )
+from peopleboy.tracker.trackers import Tracker
 
 Value = float | int | str | bool | tuple[float, ...] | None
 Changes = tuple[tuple[str, Value], ...]
 
-_ONE_PERSON = InteractionConfig(max_persons=1)
+SINGLE = ("thesis-single", "paper-single")
+"""Trackers of a single person, with one filter."""
+
 _OPEN = replace(CONTOUR, depth=DepthOrderConfig(), height=HeightConfig(), occlusion=StayBehindConfig())
 
 BASES: Mapping[str, TrackerConfig] = {
-    "thesis-single": replace(THESIS, interaction=_ONE_PERSON),
-    "paper-single": replace(PAPER, interaction=_ONE_PERSON),
+    **{name: VARIANTS[name] for name in SINGLE},
     "thesis-thermal": THESIS,
     "thesis-colour": THESIS_COLOUR,
     "thesis-occlusion": THESIS_OCCLUSION,
@@ -80,9 +83,10 @@ class TrackerSetting:
         """Return the setting at a path."""
         return attrgetter(path)(self.config())
 
-    def make(self, rng: np.random.Generator) -> ContourTracker:
+    def make(self, rng: np.random.Generator) -> Tracker:
         """Create the tracker."""
-        return ContourTracker(self.config(), rng)
+        config = self.config()
+        return SingleFilter(config, rng) if self.base in SINGLE else ContourTracker(config, rng)
 
 
 def changes_of(values: Mapping[str, Any]) -> Changes:

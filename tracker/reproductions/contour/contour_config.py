@@ -249,13 +249,11 @@ class InteractionConfig:
     detector_overlap: float = 0.0  # share of the sample's region above which it overlaps a person
     penalty: float = 2.0  # rho, for overlaps with other people
     occluded_penalty: float = 2.0  # rho_o, for overlaps with people in front
-    max_persons: int = 100  # number of people at which the detector is switched off
     total_count: int = 0  # number of samples shared evenly by all people; 0 gives each filter its own N
 
     def __post_init__(self) -> None:
         check_share(self, "detector_penalty", "detector_overlap")
         check_not_negative(self, "penalty", "occluded_penalty", "total_count")
-        check_positive(self, "max_persons")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -219,9 +219,6 @@ class ContourTracker:
             The tentative candidate; empty if there is none.
         """
         config = self._config
-        if sum(not person.is_hidden for person in self._persons) >= config.interaction.max_persons:
-            self._detector = None
-            return ()
         self._detector = self._detected(view)
         known = [person.shown for person in (*self._persons, *self._memories)]
         self._streak = self._streak.after(self._detector, known, view, config)

@@ -111,9 +111,7 @@ def test_a_detectors_samples_are_penalised_once_however_many_they_overlap(overla
     assert np.array_equal(factor, np.where(overlaps, np.float32(0.01), np.float32(1)))
 
 
-@pytest.mark.parametrize(
-    "wrong", [{"penalty": -1.0}, {"detector_penalty": 1.5}, {"max_persons": 0}, {"occluded_penalty": -0.1}]
-)
+@pytest.mark.parametrize("wrong", [{"penalty": -1.0}, {"detector_penalty": 1.5}, {"occluded_penalty": -0.1}])
 def test_impossible_interactions_are_refused(wrong):
     with pytest.raises(BadInput, match=next(iter(wrong))):
         replace(InteractionConfig(), **wrong)

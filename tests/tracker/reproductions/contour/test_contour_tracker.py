@@ -63,12 +63,6 @@ def test_who_is_no_longer_seen_is_given_up_and_the_others_stay():
     assert len(left) == 2
 
 
-def test_with_one_person_allowed_there_is_never_a_second_track():
-    config = replace(APART, interaction=replace(APART.interaction, max_persons=1))
-    tracker = ContourTracker(config, np.random.default_rng(0))
-    assert all(len(tracker.update(frame(i, *THREE))) <= 1 for i in range(40))
-
-
 def test_equal_seeds_give_equal_tracks():
     def run():
         tracker = ContourTracker(APART, np.random.default_rng(5))

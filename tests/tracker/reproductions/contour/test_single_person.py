@@ -8,7 +8,8 @@ import pytest
 
 from peopleboy.tracker.frame import THERMAL, Frame, Odometry
 from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.reproductions.contour.variants import CONTOUR, PAPER, THESIS
+from peopleboy.tracker.reproductions.contour.single_filter import NEW_PERSON_S
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR, THESIS
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
 from tests.helpers.calls.refused import refused
@@ -19,26 +20,18 @@ from tests.helpers.import_graph import ROOT
 SEEDS = range(3)
 
 
-def alone(config):
-    return replace(config, interaction=replace(config.interaction, max_persons=1))
-
-
-VARIANTS = {
-    "default": alone(CONTOUR),
-    "thesis": alone(THESIS),
-    "paper": alone(PAPER),
-}
+NAMES = ("contour", "thesis-single", "paper-single")
 
 
 def confirmed(tracks):
     return [track for track in tracks if track.status is Status.TRACKED]
 
 
-def make(name="default", seed=0):
-    return ContourTracker(VARIANTS[name], np.random.default_rng(seed))
+def make(name="contour", seed=0):
+    return make_tracker(name, seed)
 
 
-def follow(frames, seed=0, name="default"):
+def follow(frames, seed=0, name="contour"):
     tracker = make(name, seed)
     return [tracker.update(frame) for frame in frames]
 
@@ -60,7 +53,7 @@ def test_a_person_is_confirmed_within_a_second(seed):
     assert confirmed(tracks[-1])
 
 
-@pytest.mark.parametrize("name", VARIANTS)
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("grey", [0, 20, 255])
 def test_nobody_is_found_in_a_uniform_image(name, grey):
     frames = [Frame(images={THERMAL: np.full((240, 320), grey, np.uint8)}, time_s=i / 15) for i in range(30)]
@@ -91,7 +84,7 @@ def test_a_walking_person_keeps_one_id_and_a_box_near_the_truth():
     assert np.abs(late).max() < 6
 
 
-@pytest.mark.parametrize(("name", "later"), [("default", 1)])
+@pytest.mark.parametrize(("name", "later"), [("contour", 1)])
 def test_a_person_who_was_lost_comes_back_as_itself_if_it_is_remembered(name, later):
     frames = [person_frame(i / 15) for i in range(20)]
     frames += [Frame(images={THERMAL: blank()}, time_s=i / 15) for i in range(20, 45)]
@@ -99,6 +92,38 @@ def test_a_person_who_was_lost_comes_back_as_itself_if_it_is_remembered(name, la
     tracks = follow(frames, name=name)
     assert [confirmed(tracks[i])[0].id for i in (19, 69)] == [1, later]
     assert not tracks[44]
+
+
+@pytest.mark.parametrize("name", ["thesis-single", "paper-single"])
+def test_one_filter_keeps_its_samples_through_images_without_a_person(name):
+    tracker = make(name)
+    for i in range(60):
+        found = tracker.update(person_frame(i / 15))
+    assert [track.id for track in found] == [1]
+    for i in range(60, 75):
+        found = tracker.update(Frame(images={THERMAL: blank()}, time_s=i / 15))
+    assert not found
+    assert len(tracker.explanation.particles[1]) == THESIS.person.count
+    again = [tracker.update(person_frame(i / 15)) for i in range(75, 90)]
+    assert {track.id for tracks in again for track in tracks} == {1}
+
+
+def test_one_filter_gives_a_new_id_after_a_longer_absence():
+    tracker = make("thesis-single")
+    pause = round(NEW_PERSON_S * 15) + 2
+    frames = [person_frame(i / 15) for i in range(60)]
+    frames += [Frame(images={THERMAL: blank()}, time_s=i / 15) for i in range(60, 60 + pause)]
+    frames += [person_frame(i / 15) for i in range(60 + pause, 120 + pause)]
+    assert {track.id for frame in frames for track in tracker.update(frame)} == {1, 2}
+
+
+def test_one_filter_never_has_two_tracks_and_refuses_a_time_that_does_not_go_on():
+    tracker = make("thesis-single")
+    both = np.maximum(person_frame(0.0, 80.0).images[THERMAL], person_frame(0.0, 240.0).images[THERMAL])
+    frames = [Frame(images={THERMAL: both}, time_s=i / 15) for i in range(90)]
+    assert max(len(tracker.update(frame)) for frame in frames) == 1
+    with refused("time_s must go forward"):
+        tracker.update(Frame(images={THERMAL: both}, time_s=1.0))
 
 
 def test_odometry_keeps_the_person_through_a_turn_that_jumps_far():
@@ -134,7 +159,7 @@ def test_an_image_of_twice_the_size_gives_a_person_of_twice_the_size():
     assert semi_height(confirmed(tracks)[0]) == pytest.approx(56, rel=0.2)
 
 
-@pytest.mark.parametrize("name", VARIANTS)
+@pytest.mark.parametrize("name", NAMES)
 def test_the_same_seed_gives_the_same_tracks_and_another_seed_does_not(name):
     frames = [person_frame(i / 15, 60 + i) for i in range(30)]
     assert follow(frames, 5, name) == follow(frames, 5, name)
@@ -166,7 +191,7 @@ def test_particles_are_those_of_the_detector_first_and_of_the_person_then():
     assert set(tracker.explanation.particles) == {0}
     for i in range(1, 20):
         tracker.update(person_frame(i / 15))
-    assert set(tracker.explanation.particles) == {1}
+    assert set(tracker.explanation.particles) == {0, 1}
     cloud = tracker.explanation.particles[1]
     assert len(cloud) == CONTOUR.person.count
     assert cloud.weight.sum() == pytest.approx(1, abs=1e-4)
@@ -188,7 +213,7 @@ def test_an_unknown_tracker_is_refused_with_the_names_of_those_that_exist():
 
 
 def test_a_filter_of_300_samples_finds_the_person_too():
-    config = replace(alone(CONTOUR), person=replace(CONTOUR.person, count=300))
+    config = replace(CONTOUR, person=replace(CONTOUR.person, count=300))
     tracker = ContourTracker(config, np.random.default_rng(0))
     tracks = [tracker.update(person_frame(i / 15)) for i in range(25)]
     assert confirmed(tracks[-1])
