@@ -12,6 +12,8 @@ from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
 DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
 TRAINING = "training films"
 """Clips of dataset1's scenario with other seeds, used to choose the readings of the literal tracker."""
+WITH_MONITOR = "dataset1 with a monitor"
+"""Dataset1 with a warm monitor of the size of a head in view."""
 _TRAINING_SEEDS = (100, 101)
 SEQUENCES: Final[Mapping[str, str]] = {
     **{f"s1r{k}": f"bears_{k}" for k in range(1, 7)},
@@ -39,7 +41,7 @@ class Plan:
     Attributes:
         cache: folder of rendered frames.
         suites: runs by name of their data set.
-        training: separate runs, used to choose the readings.
+        further: runs by name that are no data sets: `TRAINING` and `WITH_MONITOR`.
         repeats: random streams per tracker.
         is_quick: whether sweeps take fewer values.
         pair_seeds: seeds per scenario for samples of overlapping people.
@@ -61,7 +63,7 @@ class Plan:
 
     cache: Path
     suites: Mapping[str, Sequence[SuiteRun]] = field(default_factory=dict)
-    training: Sequence[SuiteRun] = ()
+    further: Mapping[str, Sequence[SuiteRun]] = field(default_factory=dict)
     repeats: int = 10
     is_quick: bool = False
     pair_seeds: int = 10
@@ -82,7 +84,8 @@ class Plan:
 
     def runs(self, suites: Iterable[str]) -> list[SuiteRun]:
         """Return the runs of data sets, one after the other."""
-        return [run for name in suites for run in (self.training if name == TRAINING else self.suites[name])]
+        known = {**self.suites, **self.further}
+        return [run for name in suites for run in known[name]]
 
     def repeated(self, repeats: int) -> "Plan":
         """Return a full plan with a number of repeats; counts below the sources' ten stay as they are."""
@@ -102,7 +105,7 @@ class Plan:
 def full_plan(cache: Path, repeats: int = REPEATS) -> Plan:
     """Return the plan of a full run, with the sources' number of repeats or seeds."""
     suites = {name: tuple(runs_of(load_suite(name))) for name in DATASETS}
-    return Plan(cache=cache, suites=suites, training=_training(suites)).repeated(repeats)
+    return Plan(cache=cache, suites=suites, further=_further(suites)).repeated(repeats)
 
 
 def quick_plan(cache: Path) -> Plan:
@@ -111,7 +114,7 @@ def quick_plan(cache: Path) -> Plan:
     return Plan(
         cache=cache,
         suites=suites,
-        training=_training(suites),
+        further=_further(suites),
         repeats=3,
         is_quick=True,
         pair_seeds=1,
@@ -138,9 +141,13 @@ def shortened(name: str, most_s: float) -> Scenario:
     return scenario.lasting(min(scenario.duration_s, most_s))
 
 
-def _training(suites: Mapping[str, Sequence[SuiteRun]]) -> tuple[SuiteRun, ...]:
-    scenario = suites[DATASETS[0]][0].scenario
-    return tuple(SuiteRun(scenario, seed) for seed in _TRAINING_SEEDS)
+def _further(suites: Mapping[str, Sequence[SuiteRun]]) -> dict[str, tuple[SuiteRun, ...]]:
+    runs = suites[DATASETS[0]]
+    monitor = load_scenario("passers_by_monitor").lasting(runs[0].scenario.duration_s)
+    return {
+        TRAINING: tuple(SuiteRun(runs[0].scenario, seed) for seed in _TRAINING_SEEDS),
+        WITH_MONITOR: tuple(SuiteRun(monitor, run.seed) for run in runs),
+    }
 
 
 def _middle_run(name: str) -> SuiteRun:

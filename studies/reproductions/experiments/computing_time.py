@@ -26,6 +26,7 @@ from peopleboy.tracker.reproductions.contour.appearance.appearance_model import 
 from peopleboy.tracker.reproductions.contour.appearance.colour_view import ColourView, PowerSums
 from peopleboy.tracker.reproductions.contour.colour_config import ColourDescriptorConfig
 from peopleboy.tracker.reproductions.contour.contour_config import TrackerConfig
+from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation
 from peopleboy.tracker.reproductions.contour.measurement.likelihood import ContourModel, fitness, probability
 from peopleboy.tracker.reproductions.contour.particle_filter import (
     advance,
@@ -43,6 +44,7 @@ from peopleboy.tracker.reproductions.contour.particles import (
     resample,
     uncertainty_px2,
 )
+from peopleboy.tracker.trackers import Tracker, explanation_of
 
 MS: Final = "ms"
 TURNS: Final = 5
@@ -153,12 +155,19 @@ def _time_crowd(setting: TrackerSetting, people: int, steps: int) -> float:
     tracker = setting.make(stream(0, "reproduce.timing"))
     image, times = frame_of(people), []
     for number in range(60 * (people + 1) + 10 * steps):
-        before, start = len(tracker.explanation.particles), time.process_time_ns()
+        before, start = _clouds(tracker), time.process_time_ns()
         tracker.update(replace(image, time_s=number / 15))
         spent = time.process_time_ns() - start
-        if before == len(tracker.explanation.particles) == people + 1:
+        if before == _clouds(tracker) == people + 1:
             times.append(spent)
     return median(times[-steps:]) / 1e6 / (people + 1) if len(times) >= steps else float("nan")
+
+
+def _clouds(tracker: Tracker) -> int:
+    """Return the number of a contour tracker's filters."""
+    explanation = explanation_of(tracker)
+    assert isinstance(explanation, ContourExplanation)
+    return len(explanation.particles)
 
 
 _PICTURES: Mapping[str, tuple[int, int]] = {
