@@ -26,6 +26,7 @@ from peopleboy.scenarios.commands.completion import (
     complete_scenario,
 )
 from peopleboy.tracker.trackers import WITH_DETECTOR
+from peopleboy.user_files import is_stream
 
 if TYPE_CHECKING:
     from peopleboy.settings import Setting
@@ -56,7 +57,7 @@ class PlainPath(click.Path):
             path = Path(str(super().convert(value, param, ctx)))
             str(path).encode()  # as text of another encoding cannot be written to run.json
             path.resolve()  # finds links in a ring
-            is_other = path.exists() and not (path.is_file() or path.is_dir())
+            is_other = is_stream(path)
         except (OSError, ValueError, RuntimeError) as error:
             reason = getattr(error, "strerror", None) or error
             self.fail(f"{reprlib.repr(str(path))}: cannot be a path: {reason}", param, ctx)

@@ -8,6 +8,7 @@ import yaml
 from yaml.composer import Composer
 
 from peopleboy.bad_input import BadInput, found_in
+from peopleboy.user_files import is_stream
 
 _LARGEST_BYTES = 1_000_000
 # As in YAML 1.2. In YAML 1.1, 045 is octal (37), 1:30 is sexagesimal (90), and 1e3 is a string.
@@ -104,7 +105,7 @@ def _read_text(path: Path) -> str:
     try:
         if path.is_dir():
             raise BadInput("is a folder; give a scenario file that ends in .yaml")
-        if path.exists() and not path.is_file():
+        if is_stream(path):
             raise BadInput("is a pipe or a device; give a scenario file that ends in .yaml")
         with path.open("rb") as file:
             data = file.read(_LARGEST_BYTES + 1)

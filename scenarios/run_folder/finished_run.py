@@ -20,7 +20,7 @@ from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRUTH
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world_config import WorldConfig
-from peopleboy.user_files import parse_json, read_json, read_text
+from peopleboy.user_files import is_stream, parse_json, read_json, read_text
 
 _FILES = (
     "scenario.yaml", "truth/gt.txt", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",
@@ -255,7 +255,7 @@ def check_there(folder: Path) -> None:
     if not folder.is_dir():
         raise BadInput(f"{folder}: folder not found; give the folder of a finished run")
     for path in (*folder.iterdir(), *folder.glob("truth/*"), *folder.glob("tracks/*")):
-        if path.exists() and not (path.is_file() or path.is_dir()):
+        if is_stream(path):
             raise BadInput(f"{path}: is a pipe or a device; remove it, or run the scenario again")
 
 

@@ -10,13 +10,25 @@ MOST_BYTES: Final = 256_000_000
 """Largest text file that is read: about four million lines of boxes."""
 
 
+_OF_KERNEL: Final = (Path("/proc"), Path("/sys"))
+
+
+def is_stream(path: Path) -> bool:
+    """Return whether a path is a pipe, a device or a file of the kernel, whose reading may never end."""
+    if not path.exists():
+        return False
+    true_path = path.resolve()
+    is_plain = path.is_file() or path.is_dir()
+    return not is_plain or any(true_path.is_relative_to(folder) for folder in _OF_KERNEL)
+
+
 def check_plain(path: Path) -> None:
     """Refuse a pipe and a device, as reading them may never end.
 
     Raises:
         BadInput: the path is one of these.
     """
-    if path.exists() and not (path.is_file() or path.is_dir()):
+    if is_stream(path):
         raise BadInput("is a pipe or a device; give a file", file=str(path))
 
 
