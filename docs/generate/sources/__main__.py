@@ -1,4 +1,4 @@
-"""`python -m docs.generate.sources RUN`: ship the people-tracking results of a run of `peopleboy reproduce`.
+"""`python -m docs.generate.sources RUN`: ship the results of a run of `peopleboy reproduce`.
 
 Results may be of any version of the code, which the page states. With `--add ID`, this part of a later run
 replaces the shipped one, or is added, and the page states that.
@@ -24,7 +24,10 @@ from peopleboy.studies.reproductions.plan import full_plan
 from peopleboy.studies.reproductions.runner import RESULTS, finished
 from peopleboy.studies.reproductions.source_page import head_of
 
-_COMMAND = "peopleboy reproduce --paper thesis; peopleboy reproduce --paper 2005"
+PAPERS = ("thesis", "2005", "panoramic")
+"""The sources on the page; results of the fourth are on the page of results."""
+
+_COMMAND = "; ".join(f"peopleboy reproduce --paper {paper}" for paper in PAPERS)
 
 
 @click.command()
@@ -38,7 +41,7 @@ def main(run: Path, machine: str, added: tuple[str, ...]) -> None:
     results = run / RESULTS
     code = _newest_code(results)
     plan, store = full_plan(run / "films"), Store(results, code)
-    parts = of_paper("thesis") | of_paper("2005")
+    parts = {name: one for paper in PAPERS for name, one in of_paper(paper).items()}
     wanted = choose(added) if added else parts.values()
     outcomes, missing = finished([one for one in wanted if one.id in parts], plan, store)
     head = head_of(plan, outcomes, store, command=_COMMAND, missing=missing)
