@@ -57,6 +57,7 @@ from peopleboy.sim.batch.sensing import Snapshot, take_snapshot
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.rendering.view import BLIND
+from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.frame import Frame
@@ -272,6 +273,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         ends, is_cut = bool(outcomes.terminations[0]), bool(outcomes.truncations[0])
         return self._observation(), reward, ends, is_cut, self._info(outcomes)
 
+    def watch(self, snapshot: Snapshot, row: int, truth: ImageFreeTruth) -> None:
+        """Take a row of a snapshot of many worlds as the current instant, which `render` draws."""
+        self._snapshot, self._row, self._truth = snapshot, row, truth
+
     def track(self, snapshot: Snapshot, row: int) -> int:
         """Update the tracker, if there is one, with the images of an instant.
 
@@ -335,6 +340,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
     def render(self) -> NDArray[np.uint8] | None:
         """Draw thermal image, colour image and plan side by side, (360, 1440, 3); None unless "rgb_array".
+
+        The plan shows the robot, all people, the person to follow, and the goal, if there is one.
 
         Raises:
             BadInput: no episode has begun.
@@ -433,7 +440,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     def _draw(self) -> NDArray[np.uint8]:
         self._running(even_over=True)
         assert self._picture is not None
-        senses = self._snapshot.senses(0)
+        senses = self._snapshot.senses(self._row)
         assert isinstance(senses, Observation)
         explanation = None if self._tracker is None else explanation_of(self._tracker)
         return self._picture.draw(senses, self._truth, self._tracks, explanation)
@@ -462,7 +469,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._scenario = scenario.mounting(self._wanted) if self._kind == "tracks" else scenario
         self._robot = resized(self._scenario.robot.config(), self._size)
         self._goal = goal_task(scenario)
-        self._picture = ScenePicture(scenario.plan, scenario.place) if self.render_mode else None
+        self._picture = None
+        if self.render_mode:
+            goal_m, follows = scenario.robot.goal_m, self.task in ("follow", "patrol")
+            self._picture = ScenePicture(scenario.plan, scenario.place, goal_m, follows=follows)
 
     def _config(self) -> WorldConfig:
         config = self._scenario.world(self._seed)
@@ -473,7 +483,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
     def _perceive(self, world: SimulatedWorld) -> list[int] | None:
         """Take a snapshot, and return the ids of tracks that `LiveEpisodes.evaluate` needs."""
-        self._snapshot = take_snapshot(world)._replace(numbers=np.array([self._number]))
+        self._snapshot, self._row = take_snapshot(world)._replace(numbers=np.array([self._number])), 0
         if self.has_faults:
             self._snapshot = self._snapshot.with_senses([self.spoil(self._snapshot.senses(0))])
         return None if self._tracker is None else [self.track(self._snapshot, 0)]

@@ -9,7 +9,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.environments.arguments import check_actions
+from peopleboy.scenarios.environments.arguments import check_actions, check_word
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.episodes import LiveEpisodes, Metrics, StepOutcomes
 from peopleboy.scenarios.environments.observations import Arrays
@@ -145,7 +145,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         threads: number of threads that render images; None for one per processor. The output does not
             depend on it.
         autoreset_mode: `AutoresetMode.NEXT_STEP` or `AutoresetMode.SAME_STEP`.
-        settings: arguments of `PeopleBoyEnv`, except `render_mode`.
+        settings: arguments of `PeopleBoyEnv`; its `render_mode` may be "rgb_array" or None.
 
     Attributes:
         envs: the B single environments, for their attributes and methods other than `reset` and `step`.
@@ -164,8 +164,8 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
     ) -> None:
         if not (isinstance(num_envs, int | np.integer) and num_envs >= 1):
             raise BadInput(f"num_envs {num_envs!r}: must be 1 or more")
-        if settings.get("render_mode") is not None:
-            raise BadInput("render_mode: a vector environment does not render; leave it out")
+        self.render_mode = settings.get("render_mode")
+        check_word("render_mode", self.render_mode, (None, "rgb_array"))
         if autoreset_mode not in AUTORESETS:
             known = " or ".join(map(str, AUTORESETS))
             raise BadInput(f"autoreset_mode {autoreset_mode!r}: must be {known}")
@@ -175,7 +175,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self._crew = WorkerPool(threads)
         self.envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))
         self.metadata = {
-            "render_modes": [],
+            "render_modes": ["rgb_array"],
             "render_fps": PeopleBoyEnv.metadata["render_fps"],
             "autoreset_mode": autoreset_mode,
         }
@@ -231,7 +231,11 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         snapshot = self._step_together(np.flatnonzero(~is_over), shares)
         results = StepResults(self.num_envs)
         for each in snapshot:
-            results.take(each.numbers, self._episodes.evaluate(each, shares[each.numbers], self._track(each)))
+            outcomes = self._episodes.evaluate(each, shares[each.numbers], self._track(each))
+            results.take(each.numbers, outcomes)
+            if self.render_mode is not None:
+                for row, number in enumerate(each.numbers.tolist()):
+                    self.envs[number].watch(each, row, outcomes.truths[row])
         begun = self._begin(np.flatnonzero(is_over), results)
         ends = results.terminations | results.truncations
         metrics = [
@@ -257,6 +261,15 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         begun = self._begin(np.flatnonzero(ends), results)
         seeds: list[int] = [env.seed for env in self.envs]
         return results.infos(seeds, [None] * self.num_envs) | _with_flags(final, ends), begun
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Draw each world as `PeopleBoyEnv.render` does: B pictures; None unless "rgb_array".
+
+        Raises:
+            BadInput: no episodes have begun.
+        """
+        pictures = [env.render() for env in self.envs]
+        return None if self.render_mode is None else tuple(one for one in pictures if one is not None)
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Call a method of each environment, or get an attribute, as in gymnasium's vector environments."""

@@ -61,7 +61,8 @@ class ThermalStage:
         self._name, self._config, self._scene, self._worlds = name, config, scene, tuple(worlds)
         self._camera = _kernel_camera(config.camera)
         self._surroundings = np.array([mirrored(world.config.place.surroundings_c) for world in worlds])
-        detectors = [_thermal(world, name).detector for world in worlds]
+        sensors = [world.rig.sensor(name) for world in worlds]
+        detectors = [sensor.detector for sensor in sensors if isinstance(sensor, ThermalSensor)]
         self._detectors = Detectors(
             offset_k=np.stack([each.offset_k for each in detectors]),
             dead=np.stack([each.dead for each in detectors]),

@@ -66,6 +66,10 @@ class Rig:
             self._unread[name] += 1
         return due
 
+    def sensor(self, name: str) -> Sensor:
+        """Return the sensor of a camera, for a caller that reads its settings and takes no image."""
+        return self._sensors[name]
+
     def take_over(self, name: str) -> Sensor:
         """Return the sensor of a camera, for a caller that renders its image of this instant."""
         sensor = self._sensors[name]

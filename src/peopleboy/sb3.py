@@ -91,6 +91,10 @@ class PeopleBoyVecEnv(VecEnv):  # type: ignore[misc]  # stable-baselines3 is opt
         """Free all worlds."""
         self._worlds.close()
 
+    def get_images(self) -> list[NDArray[np.uint8] | None]:
+        """Return a picture of each world for videos; `render_mode` must be "rgb_array"."""
+        return [env.render() for env in self._envs]
+
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
         """Return an attribute of some of the single environments."""
         return [getattr(env, attr_name) for env in self._chosen(indices)]

@@ -297,8 +297,9 @@ def test_closing_frees_the_physics_world(scene: Path) -> None:
         env.step((0.0, 0.0))
 
 
-def test_the_picture_shows_both_images_and_the_plan(scene: Path) -> None:
-    env = PeopleBoyEnv(scene, observation="tracks", render_mode="rgb_array")
+@pytest.mark.parametrize("size", [(320, 240), (64, 48), (1280, 48), (64, 960)])
+def test_the_picture_shows_both_images_and_the_plan_at_any_size(scene: Path, size: tuple[int, int]) -> None:
+    env = PeopleBoyEnv(scene, observation="tracks", render_mode="rgb_array", image_size=size)
     env.reset(seed=0)
     picture = env.render()
     assert picture.shape == (360, 1440, 3)

@@ -5,6 +5,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.vector import AutoresetMode
 
 import peopleboy  # noqa: F401  # tells gymnasium the environments
 from peopleboy.bad_input import BadInput
@@ -209,8 +210,8 @@ def test_what_does_not_fit_many_worlds_is_refused() -> None:
         PeopleBoyVectorEnv(2, threads="a")  # type: ignore[arg-type]
     with pytest.raises(BadInput, match=r"autoreset_mode 'same': must be AutoresetMode.NEXT_STEP or"):
         PeopleBoyVectorEnv(2, autoreset_mode="same")  # type: ignore[arg-type]
-    with pytest.raises(BadInput, match="render_mode"):
-        PeopleBoyVectorEnv(2, render_mode="rgb_array")
+    with pytest.raises(BadInput, match="unknown render_mode 'human'; choose from None, rgb_array"):
+        PeopleBoyVectorEnv(2, render_mode="human")
     many = PeopleBoyVectorEnv(2, observation="truth", physics="kinematic")
     with pytest.raises(BadInput, match="no episode"):
         many.step(np.zeros((2, 2), np.float32))
@@ -248,3 +249,32 @@ def test_worlds_of_several_kinds_some_of_them_empty_are_single_worlds_too() -> N
             assert all(found[name][number].tobytes() == array.tobytes() for name, array in seen.items())
     for env in (many, *single):
         env.close()
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode)[:2])
+def test_each_world_is_drawn_as_a_single_environment_draws_it(mode: AutoresetMode) -> None:
+    settings: Any = {
+        "observation": "truth",
+        "physics": "kinematic",
+        "render_mode": "rgb_array",
+        "image_size": (64, 48),
+    }
+    many = PeopleBoyVectorEnv(2, autoreset_mode=mode, max_episode_steps=3, **settings)
+    singles = [PeopleBoyEnv(max_episode_steps=3, **settings) for _ in range(2)]
+    many.reset(seed=5)
+    for number, single in enumerate(singles):
+        single.reset(seed=5 + number)
+    for _ in range(5):
+        many.step(np.full((2, 2), 0.3, np.float32))
+        pictures = many.render()
+        assert pictures is not None
+        for single, picture in zip(singles, pictures, strict=True):
+            ended = single._own["is_over"]
+            if not ended:
+                ended = any(single.step(np.full(2, 0.3, np.float32))[2:4]) and mode is AutoresetMode.SAME_STEP
+            if ended:
+                single.reset()
+            drawn = single.render()
+            assert drawn is not None
+            np.testing.assert_array_equal(picture, drawn)
+    many.close()
