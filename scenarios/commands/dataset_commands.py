@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -27,9 +27,15 @@ from peopleboy.wording import counted
 if TYPE_CHECKING:
     from peopleboy.scenarios.export.export_runs import ExportOptions
     from peopleboy.scenarios.export.make_dataset import RenderedSet, SetOptions
+    from peopleboy.scenarios.run_folder.frame_choice import FrameChoice
     from peopleboy.scenarios.running.engine.task import Workers
 
 FAILED = 1
+_CHOICE: Final = "scenarios.run_folder.frame_choice:FrameChoice"
+_CHOICE_FIELDS: Final = (
+    "every", "frames_per_world", "keep_empty", "least_people", "most_people", "least_height_px",
+    "least_visible",
+)  # fmt: skip
 
 
 @click.command(cls=FieldsCommand)
@@ -39,12 +45,14 @@ FAILED = 1
     *("frames", "random_worlds", "out", "tracker"),
     tracker=f"Tracker for robots that follow people: {TRACKERS}.  [default: truth]",
 )
+@options_of(_CHOICE, *_CHOICE_FIELDS, into="choice")
 @seeds_options(100)
 @workers_options
 @output_options
 def render(
     scenarios: tuple[str, ...],
     given: "GivenOptions[SetOptions]",
+    choice: "GivenOptions[FrameChoice]",
     seeds: range,
     workers: "Workers",
     output: Output,
@@ -55,15 +63,16 @@ def render(
     random world per seed instead, with its own place, objects, temperatures, people and cameras. With at
     least 7 seeds, every split contains runs.
 
+    With options that choose frames, such as --frames-per-world, the data set contains single images instead
+    of whole runs, and takes much less time and space.
+
     If rendering is interrupted, run the command again to resume it. If you run it again with more --seeds,
     the data set grows, and all earlier runs stay in their splits.
     """
     from peopleboy.scenarios.export.make_dataset import render_set
 
-    options = given.make(scenarios=scenarios, seeds=seeds)
-    contents, name = options.contents()
-    folder = options.out or Path("sets") / name
-    done = render_set(contents, folder, frames=options.frames, tracker=options.tracker, workers=workers)
+    options = given.make(scenarios=scenarios, seeds=seeds, choice=choice.make())
+    done = render_set(options, workers)
     output.results(done.to_json, lambda: _print_set(done))
     if not done.is_sound:
         sys.exit(FAILED)
@@ -104,8 +113,15 @@ class FormatName(click.Choice[str]):
     *("camera", "least_px", "boxes", "epoch", "ros_distro", "out", "overwrite"),
     out="Output folder.  [default: RUN-FORMAT(-CAMERA) next to the run, or export-FORMAT for several runs]",
 )
+@options_of(_CHOICE, *_CHOICE_FIELDS, into="choice")
 @output_options
-def export(runs: Sequence[Path], form: str, given: "GivenOptions[ExportOptions]", output: Output) -> None:
+def export(
+    runs: Sequence[Path],
+    form: str,
+    given: "GivenOptions[ExportOptions]",
+    choice: "GivenOptions[FrameChoice]",
+    output: Output,
+) -> None:
     """Export runs to the formats of other tools.
 
     RUNS are run folders, or folders that contain run folders. A rendered data set is exported to `coco`,
@@ -117,12 +133,14 @@ def export(runs: Sequence[Path], form: str, given: "GivenOptions[ExportOptions]"
     contains boxes for Ultralytics, and `yolo-pose` adds keypoints. `viper` is ViPER XML. `mcap` is a ROS 2
     bag and needs the package rosbags. `mp4` contains videos and needs the package av.
 
-    `coco`, `images` and `mcap` contain all cameras. Images and masks are rendered again, and are
-    bit-identical to those of the run.
+    `coco`, `images` and `mcap` contain all cameras. Images and masks that the run has not written are
+    rendered again, and are bit-identical to those of the run.
+
+    Options that choose frames, such as --every, apply to formats of images, not to those of sequences
+    (`mot`, `viper`, `mcap`, `mp4`).
     """
     from peopleboy.scenarios.export.export_runs import export as write
     from peopleboy.scenarios.export.export_runs import notes_on
-    from peopleboy.scenarios.export.replay import counted
     from peopleboy.scenarios.export.splits import refuse_unfinished
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.run_folder.finished_run import open_whole_runs, runs_in
@@ -132,14 +150,14 @@ def export(runs: Sequence[Path], form: str, given: "GivenOptions[ExportOptions]"
     opened = open_whole_runs(
         [run for folder in runs for run in runs_in(folder)],
         are_named_apart=form != "mot",  # mot names sequences by scenario and seed, for several trackers
+        may_be_sampled=True,
     )
     first = opened[0].folder
     what = form if given.camera is None else f"{form}-{given.camera}"
     name = f"{first.name}-{what}" if len(opened) == 1 else f"export-{what}"
-    options = given.make(form=form, out=given.out or first.parent / name)
-    frames = sum(run.frames for run in opened)
+    options = given.make(form=form, out=given.out or first.parent / name, choice=choice.make())
     with progress_bar(form, unit="frames") as show:
-        write(opened, options, counted(lambda frame: show(frame, frames)))
+        write(opened, options, show)
     notes = list(notes_on(opened, options))
     for note in notes:
         print_note(note)

@@ -19,6 +19,7 @@ from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.run_folder.run_tables import LOCAL
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
+from peopleboy.scenarios.running.sample_run import sample_run
 from peopleboy.sim.cameras.kinds import image_folders
 
 _ROUNDING = 1e-9
@@ -78,7 +79,8 @@ def _check_images(run: Path) -> list[str]:
     wrong = []
     for name, camera in cameras_of(run).items():
         every = about["rate_hz"] // (camera.rate_hz or about["rate_hz"])
-        frames = range(1, about["frames"] + 1, every)
+        kept = about.get("kept_frames", range(1, about["frames"] + 1))
+        frames = [frame for frame in kept if (frame - 1) % every == 0]
         views = [_look_into(run / folder) for folder, _, _ in image_folders({name: camera})]
         wrong += [f"{name}: {fault}" for look in views for fault in _faults(look, frames)]
         # A cold scene can be black in the 8-bit image, while the other images still have content.
@@ -106,7 +108,7 @@ def _faults(look: _Look, frames: Sequence[int]) -> Iterator[str]:
     if list(look) != [image_file(frame) for frame in frames]:
         yield f"{len(look)} images for {len(frames)} frames"
     shapes = {shape for shape, _ in look.values()}
-    if len(shapes) != 1 or None in shapes:
+    if len(shapes) > 1 or None in shapes:
         yield "images of several sizes, or unreadable"
 
 
@@ -159,12 +161,13 @@ def _check_again(done: Path, scenario: Scenario, options: RunOptions) -> list[st
     """Repeat the run, and compare every image and every line of text."""
     rate_hz = json.loads((done / "run.json").read_text())["rate_hz"]
     entries_s = [person.enter_s for person in scenario.people(options.seed)]
-    short = scenario.lasting(
-        max(_AGAIN_FRAMES / rate_hz, *(entry + 1.0 / rate_hz for entry in entries_s), 0.0)
-    )
+    lasts_s = max(_AGAIN_FRAMES / rate_hz, *(entry + 1.0 / rate_hz for entry in entries_s), 0.0)
     with tempfile.TemporaryDirectory() as scratch:
         again = Path(scratch) / "again"
-        run(short, replace(options, out=again), lambda _tick, _frames: None)
+        if options.choice is None:
+            run(scenario.lasting(lasts_s), replace(options, out=again), lambda _tick, _frames: None)
+        else:  # which frames are chosen depends on the length of the run
+            sample_run(scenario, replace(options, out=again), lambda _frame: None)
         folders = [folder for folder, _, _ in image_folders(cameras_of(again))]
         files = [path for folder in folders for path in sorted((again / folder).glob("*.png"))]
         wrong = [

@@ -78,7 +78,7 @@ def measure(runs: Sequence[Path]) -> Statistics:
     """Go through the truth, and the images if there are any, of these runs' folders."""
     tables = [pq.read_table((run / "truth.parquet").absolute(), filesystem=LOCAL) for run in runs]
     about = [json.loads((run / "run.json").read_text(encoding="utf-8")) for run in runs]
-    frames = [(one["frames"], one["rate_hz"]) for one in about]
+    frames = [(len(one.get("kept_frames", range(one["frames"]))), one["rate_hz"]) for one in about]
     people = pa.concat_tables(tables)
     inside = is_in_image(people)
     means, deviations = _image_statistics(runs)

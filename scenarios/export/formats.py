@@ -35,6 +35,9 @@ FORMATS: Final = Registry(
 )
 """The formats by name; each is called with `(runs, folder, play)`, and further parameters are options."""
 
+SEQUENCES: Final = ("mot", "viper", "mcap", "mp4")
+"""Formats of whole sequences, of which no frame can be left out."""
+
 
 def takes(name: str, option: str) -> bool:
     """Return whether a format has an option: `camera`, `least_px` or `boxes`."""

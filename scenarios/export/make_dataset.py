@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Final
 
@@ -22,10 +22,12 @@ from peopleboy.scenarios.export.splits import (
 )
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.random_worlds.distribution import Distribution, narrowed
 from peopleboy.scenarios.random_worlds.drawn_values import drawn_values, histograms
 from peopleboy.scenarios.random_worlds.random_world import world_name
 from peopleboy.scenarios.run_folder.atomic_output import check_named, writing_to
 from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.frame_choice import FrameChoice
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run_options import RunOptions
@@ -50,14 +52,14 @@ class SetContents:
         asked: arguments of the command that requests them.
         about: the request as written to `dataset.json`.
         lacking: the splits without a run, and the number of seeds needed; empty if all have one.
-        is_random: whether the runs are random worlds.
+        distribution: distribution of the random worlds; None for scenarios.
     """
 
     members: tuple[Member, ...]
     asked: tuple[str, ...]
     about: Mapping[str, Any]
     lacking: str
-    is_random: bool = False
+    distribution: Distribution | None = None
 
 
 def of_scenarios(scenarios: Sequence[str], seeds: range) -> SetContents:
@@ -80,14 +82,23 @@ def of_scenarios(scenarios: Sequence[str], seeds: range) -> SetContents:
     )
 
 
-def of_worlds(seeds: range) -> SetContents:
-    """Return the contents of a set of random worlds, one for each seed."""
+def of_worlds(seeds: range, given: Mapping[str, Any] | None = None) -> SetContents:
+    """Return the contents of a set of random worlds, one for each seed.
+
+    Args:
+        seeds: seeds of the worlds.
+        given: parts of the distribution that are replaced, see `narrowed`; None for none.
+
+    Raises:
+        BadInput: the distribution is invalid.
+    """
+    given = given or {}
     return SetContents(
         members=tuple(Member(None, seed, world_name(seed)) for seed in seeds),
         asked=("--random-worlds",),
-        about={"random_worlds": True} | _about(seeds),
+        about={"random_worlds": True} | ({"distribution": given} if given else {}) | _about(seeds),
         lacking=lacking_splits(seeds),
-        is_random=True,
+        distribution=narrowed(given),
     )
 
 
@@ -105,6 +116,7 @@ class SetOptions:
 
     Attributes:
         seeds: seeds of the runs of each scenario, or of the random worlds.
+        choice: frames of each run that are written.
     """
 
     scenarios: tuple[str, ...] = ()
@@ -120,19 +132,28 @@ class SetOptions:
         Field(description="Output folder.  [default: sets/SCENARIO-SCENARIO..., or sets/worlds]"),
     ] = None
     tracker: Annotated[str, Field(description="Tracker of robots that follow people.")] = "truth"
+    choice: FrameChoice = field(default_factory=FrameChoice)
 
-    def contents(self) -> tuple[SetContents, str]:
-        """Return the runs, and the default name of the set.
+    def contents(self) -> SetContents:
+        """Return the runs.
 
         Raises:
             BadInput: options contradict each other, or a scenario cannot be loaded.
         """
         if bool(self.scenarios) is self.random_worlds:
             raise BadInput("render: give either scenarios or --random-worlds")
-        if self.random_worlds:
-            return of_worlds(self.seeds), "worlds"
-        contents = of_scenarios(self.scenarios, self.seeds)
-        return contents, "-".join(contents.about["scenarios"])
+        if not self.choice.is_all and not self.frames:
+            raise BadInput(f"{self.choice.options()}: chooses images; give --frames as well")
+        return of_worlds(self.seeds) if self.random_worlds else of_scenarios(self.scenarios, self.seeds)
+
+    def folder(self, contents: SetContents) -> Path:
+        """Return the folder of the set."""
+        return self.out or Path("sets") / "-".join(contents.about.get("scenarios", ["worlds"]))
+
+    def asked(self, contents: SetContents) -> tuple[str, ...]:
+        """Return the arguments and options of the command that renders this set, except the seeds."""
+        frames = ("--frames",) if self.frames else ()
+        return (*contents.asked, *frames, *self.choice.options().split())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,24 +193,21 @@ class RenderedSet:
         return not any(check.failures for check in self.checks)
 
 
-def render_set(
-    contents: SetContents, folder: Path, *, frames: bool, tracker: str, workers: Workers
-) -> RenderedSet:
+def render_set(options: SetOptions, workers: Workers) -> RenderedSet:
     """Render a set; complete runs that exist already are kept.
 
     The datasheet and `dataset.json` are written last: a set without them is unfinished.
 
     Args:
-        contents: contents of the set.
-        folder: folder of the set.
-        frames: whether images are written.
-        tracker: tracker of robots that follow people; "truth" for the ground truth boxes.
+        options: contents of the set, and how it is rendered.
         workers: workers that execute the runs.
 
     Raises:
         BadInput: as for a run; or the folder contains something other than a set.
         TasksFailed: some runs failed.
     """
+    contents = options.contents()
+    folder, choice = options.folder(contents), None if options.choice.is_all else options.choice
     members = contents.members
     for scenario in {member.scenario for member in members if member.scenario is not None}:
         check_physics(scenario.spec.physics)
@@ -198,8 +216,14 @@ def render_set(
         RunTask(
             member.scenario,
             RunOptions(
-                seed=member.seed, out=folder / member.name, frames=frames, tracker=tracker, record=False
+                seed=member.seed,
+                out=folder / member.name,
+                frames=options.frames,
+                tracker=options.tracker,
+                record=False,
+                choice=choice,
             ),
+            contents.distribution,
         )
         for member in members
     ]
@@ -217,15 +241,17 @@ def render_set(
         size_mb=sum(path.stat().st_size for run in runs for path in run.rglob("*") if path.is_file()) / 1e6,
         lacking=contents.lacking,
     )
-    about = {**contents.about, "images": frames, "tracker": tracker, "versions": versions()}
+    about = {**contents.about, "images": options.frames, "tracker": options.tracker, "versions": versions()}
+    about |= {} if choice is None else {"choice": choice.to_json()}
     scenarios = list(dict.fromkeys(task.played for task in tasks))
     drawn = {}
-    if contents.is_random:
+    if contents.distribution is not None:
         worlds = zip(scenarios, numbers, strict=True)
         drawn = {world.name: drawn_values(world.resolved(seed)) for world, seed in worlds}
         (folder / DRAWN).write_text(json.dumps(drawn, indent=1) + "\n", encoding="utf-8")
     content = about | {
-        "asked": contents.asked,
+        "asked": options.asked(contents),
+        "choice": choice,
         "size_mb": done.size_mb,
         "lacking": done.lacking,
         "drawn": histograms(list(drawn.values())),

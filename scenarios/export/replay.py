@@ -53,6 +53,8 @@ _TOLERANCE = 0.01
 def replay(run: FinishedRun) -> Iterator[Tick]:
     """Yield the ticks of a finished run, with images and masks, and those explanations that were stored.
 
+    Of a run with chosen frames, only their ticks are yielded.
+
     Raises:
         BadInput: the replay differs from the run, or PyBullet is not installed.
     """
@@ -63,23 +65,30 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
     files = run.files()
     tracks, people = files.tracks_by_frame(), files.people_by_frame()
     explanations = files.explanations_by_frame(run.about.tracker)
+    kept, skips = set(run.kept_frames), run.is_sampled and not run.scenario.needs_every_frame
+    last = max(kept, default=0)
     with SimulatedWorld(run.world) as world:
         stage = FaultySensors(world, run.scenario.spec.faults)
-        for row in files.robot.to_pylist():
+        for row in files.robot.to_pylist()[:last]:
             frame = row["frame"]
             command = _command(row)
-            tick = Tick(
-                frame=frame,
-                observation=stage.observe(),
-                truths=stage.truths(),
-                tracks=tuple(tracks[frame]),
-                explanation=explanations[frame],
-                mode=row["mode"],
-                command=command,
-            )
-            _compare(tick, row, people.get(frame, []), run)
-            yield tick
-            if frame < run.frames:
+            if frame in kept:
+                tick = Tick(
+                    frame=frame,
+                    observation=stage.observe(),
+                    truths=stage.truths(),
+                    tracks=tuple(tracks[frame]),
+                    explanation=explanations[frame],
+                    mode=row["mode"],
+                    command=command,
+                )
+                _compare(tick, row, people.get(frame, []), run)
+                yield tick
+            elif skips:
+                world.sense()
+            else:
+                stage.observe()
+            if frame < last:
                 stage.step(command.linear_m_s, command.angular_rad_s, is_emergency=command.is_emergency)
 
 
@@ -153,8 +162,11 @@ class OneCamera:
 
     @property
     def frames(self) -> Sequence[int]:
-        """The frames of the run in which the camera took an image."""
-        return range(1, self.run.frames + 1, self.every)
+        """The frames of the run to use in which the camera took an image."""
+        kept = self.run.kept_frames
+        if isinstance(kept, range):
+            return kept[:: self.every]
+        return [frame for frame in kept if (frame - 1) % self.every == 0]
 
     @property
     def rate_hz(self) -> int:

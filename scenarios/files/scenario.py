@@ -112,6 +112,17 @@ class Scenario:
 
         return self.robot.tracker or DEFAULT_TRACKER
 
+    @property
+    def needs_tracker(self) -> bool:
+        """Whether the robot's commands depend on what a tracker finds in the images."""
+        is_own = self.own_behaviour is not None
+        return self.drive is None and (is_own or self.robot.behaviour not in ("stand", "scripted"))
+
+    @property
+    def needs_every_frame(self) -> bool:
+        """Whether images of later frames depend on those of all earlier ones, so that none can be skipped."""
+        return self.needs_tracker or bool(self.spec.faults)
+
     def people(self, seed: int) -> tuple[PersonSpec, ...]:
         """Return all people, including group members, resolved with a seed.
 

@@ -14,8 +14,9 @@ from peopleboy.own_code import OwnCodeFailed, at_frame
 from peopleboy.scenarios.loop.camera_health import CameraHealth
 from peopleboy.sim.cameras.camera_config import CameraConfig, calibrations_of
 from peopleboy.sim.cameras.kinds import flat_geometry, image_names
-from peopleboy.sim.observation import Observation, OnDemand
+from peopleboy.sim.observation import Observation, OnDemand, Senses
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
+from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL, Frame
@@ -73,6 +74,25 @@ class Tick:
     def truth(self) -> Truth:
         """Ground truth for the thermal camera, with its boxes and masks."""
         return self.truths["thermal"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class BlindTick:
+    """One step without images, of a robot whose commands do not depend on them.
+
+    Attributes:
+        frame: 1, 2, ...
+        observation: readings of the other sensors.
+        truth: ground truth of the robot; its people are left out.
+        mode: mode of the behaviour.
+        command: the robot's next command.
+    """
+
+    frame: int
+    observation: Senses
+    truth: ImageFreeTruth
+    mode: str
+    command: Command
 
 
 class Stage(Protocol):

@@ -56,6 +56,8 @@ class About(BaseModel):
     planned_frames: Annotated[int, Field(ge=1)] | None = None
     behaviour: str | None = None
     adopted: ImportedTracks | None = None
+    choice: dict[str, Any] | None = None
+    kept_frames: list[int] | None = None
     episode: dict[str, Any] | None = None
 
     @property
@@ -73,6 +75,7 @@ class FinishedRun:
     Attributes:
         folder: folder of the run.
         about: contents of run.json.
+        chosen: frames to use instead of all that have images and ground truth; None for all.
 
     Raises:
         BadInput: a file needed by the accessed attribute is missing or damaged.
@@ -80,6 +83,7 @@ class FinishedRun:
 
     folder: Path
     about: About
+    chosen: tuple[int, ...] | None = None
 
     @property
     def name(self) -> str:
@@ -95,6 +99,18 @@ class FinishedRun:
     def frames(self) -> int:
         """Number of frames; the first frame is 1."""
         return self.about.frames
+
+    @property
+    def is_sampled(self) -> bool:
+        """Whether only some frames have images and ground truth."""
+        return self.about.kept_frames is not None
+
+    @property
+    def kept_frames(self) -> Sequence[int]:
+        """The frames to use, ascending: those that have images and ground truth, or some of them."""
+        if self.chosen is not None:
+            return self.chosen
+        return range(1, self.frames + 1) if self.about.kept_frames is None else self.about.kept_frames
 
     @property
     def incomplete(self) -> str:
@@ -172,18 +188,23 @@ def incomplete(about: Mapping[str, Any]) -> str:
 def note_on(folder: Path) -> str:
     """Return why a folder is not that of a complete run; empty if it is."""
     try:
-        return incomplete(read_run(folder))
+        return incomplete(read_run(folder, may_be_sampled=True))
     except BadInput as error:
         return str(error)
 
 
-def read_run(folder: Path) -> dict[str, Any]:
+def read_run(folder: Path, *, may_be_sampled: bool = False) -> dict[str, Any]:
     """Read run.json of a run that is complete or was cut off; it may also be a run of footage.
 
     The folder of a run that was killed is completed first, up to its last whole frame.
 
+    Args:
+        folder: folder of the run.
+        may_be_sampled: whether only some of its frames may have images and ground truth.
+
     Raises:
-        BadInput: there is no run, or it failed, goes on, or was cut off before its first frame.
+        BadInput: there is no run, or it failed, goes on, or was cut off before its first frame; or only some
+            of its frames have images and ground truth.
     """
     path = folder / "run.json"
     check_there(folder)
@@ -201,6 +222,8 @@ def read_run(folder: Path) -> dict[str, Any]:
         raise BadInput(f"{path}: has no status of a run; run it again")
     if about["status"] == "cut off" and about.get("frames") == 0:
         raise BadInput(f"{path}: this run was cut off before its first frame; run it again")
+    if "choice" in about:
+        _check_sampled(folder, about, may_be_sampled)
     if not isinstance(about.get("frames"), int):
         raise BadInput(f"{path}: frames: must be a whole number, got {about.get('frames')!r}; run it again")
     for key in _TEXTS:
@@ -209,13 +232,31 @@ def read_run(folder: Path) -> dict[str, Any]:
     return about
 
 
-def open_run(folder: Path) -> FinishedRun:
+def _check_sampled(folder: Path, about: Mapping[str, Any], may_be_sampled: bool) -> None:
+    """Refuse a run with chosen frames only if it was cut off, or if a sequence is needed.
+
+    Raises:
+        BadInput: it was, or one is.
+    """
+    if not may_be_sampled:
+        raise BadInput(
+            f"{folder}: has chosen frames only, not a sequence; render it without options that choose frames"
+        )
+    if about["status"] == "cut off":
+        raise BadInput(f"{folder}: this run was cut off; repeat its `peopleboy render`")
+
+
+def open_run(folder: Path, *, may_be_sampled: bool = False) -> FinishedRun:
     """Open a run of a scenario, complete or cut off, by its folder.
+
+    Args:
+        folder: folder of the run.
+        may_be_sampled: whether only some of its frames may have images and ground truth.
 
     Raises:
         BadInput: the folder does not contain one.
     """
-    data = read_run(folder)
+    data = read_run(folder, may_be_sampled=may_be_sampled)
     if "footage" in data:
         raise BadInput(f"{folder}: is a run of footage; give a run of a scenario")
     try:
@@ -225,17 +266,20 @@ def open_run(folder: Path) -> FinishedRun:
     return FinishedRun(folder, about)
 
 
-def open_whole_runs(folders: Sequence[Path], *, are_named_apart: bool = True) -> list[FinishedRun]:
+def open_whole_runs(
+    folders: Sequence[Path], *, are_named_apart: bool = True, may_be_sampled: bool = False
+) -> list[FinishedRun]:
     """Open runs and check that they are complete enough to be replayed.
 
     Args:
         folders: folders of the runs.
         are_named_apart: whether all names must differ.
+        may_be_sampled: whether only some of their frames may have images and ground truth.
 
     Raises:
         BadInput: a folder does not contain such a run, or two runs have the same name.
     """
-    runs = [_open_whole(folder) for folder in folders]
+    runs = [_open_whole(folder, may_be_sampled) for folder in folders]
     seen: dict[str, Path] = {}
     for run in runs:
         if are_named_apart and run.name in seen:
@@ -270,12 +314,12 @@ def runs_in(folder: Path) -> list[Path]:
     return inner if inner and not (folder / "run.json").exists() else [folder]
 
 
-def _open_whole(folder: Path) -> FinishedRun:
-    read_run(folder)
+def _open_whole(folder: Path, may_be_sampled: bool) -> FinishedRun:
+    read_run(folder, may_be_sampled=may_be_sampled)
     for name in _FILES:
         if not (folder / name).is_file():
             raise BadInput(f"{folder / name}: file not found; only runs of scenarios can be exported")
-    run = open_run(folder)
+    run = open_run(folder, may_be_sampled=may_be_sampled)
     _ = run.world
     run.files()
     return run

@@ -14,7 +14,7 @@ import yaml
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed, in_one_line, traceback_of
-from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.loop import BlindTick, Tick
 from peopleboy.scenarios.run_folder.atomic_output import (
     PART,
     check_out,
@@ -117,7 +117,6 @@ class RunFolder:
         self.path = path
         self._cameras = cameras
         self._about = dict(about) | {"versions": versions()}
-        self._writes_frames = frames
         self._frames = 0
         self._is_complete = False
         _write_json(self.path / "run.json", {"status": "running", **self._about})
@@ -171,9 +170,19 @@ class RunFolder:
             images = images_to_write(self.path, tick.frame, tick.observation, self._cameras)
             self._images.add(partial(self._commit, rows, list(images)))
 
+    def skip(self, tick: Tick | BlindTick) -> None:
+        """Write only the robot's row of a tick, whose images and ground truth are not wanted."""
+        self._images.flush()
+        self._commit({ROBOT_TABLE: [robot_row(tick)]})
+
     def complete(self, metrics: Mapping[str, Any]) -> None:
         """Write the metrics, and mark the run as complete."""
         _write_json(self.path / "metrics.json", metrics)
+        self._is_complete = True
+
+    def complete_sample(self, kept_frames: Sequence[int]) -> None:
+        """Mark the run as complete, with images and ground truth of these frames only."""
+        self._about["kept_frames"] = list(kept_frames)
         self._is_complete = True
 
     def flush(self) -> None:

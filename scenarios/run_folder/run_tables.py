@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pyarrow.fs import LocalFileSystem
 
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.loop import BlindTick, Tick
 from peopleboy.scenarios.run_folder.atomic_output import PART
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation, Ellipse
@@ -271,7 +271,7 @@ def track_row(frame: int, time_s: float, track: Track, explanation: object, came
     return row_of(_TRACK, frame, time_s, one)
 
 
-def robot_row(tick: Tick) -> Row:
+def robot_row(tick: Tick | BlindTick) -> Row:
     """Return the row of the robot table for one tick."""
     return row_of(_ROBOT, tick.frame, tick.truth.time_s, tick)
 

@@ -102,8 +102,7 @@ def film(
         BadInput: the robot follows tracked people, and has no recorded drive.
     """
     scenario = load_scenario(scenario)
-    goes_by_sight = scenario.own_behaviour or scenario.robot.behaviour not in ("stand", "scripted")
-    if goes_by_sight and scenario.drive is None:
+    if scenario.needs_tracker:
         raise BadInput(
             f"{scenario.name}: its robot depends on a tracker, so its frames cannot be cached; "
             "give a scenario whose robot stands or is scripted"

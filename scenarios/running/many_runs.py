@@ -11,6 +11,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.suite import load_suite, runs_of, scenarios_of
 from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
+from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import LASTS_S, random_scenario, world_name
 from peopleboy.scenarios.run_folder.atomic_output import check_out
 from peopleboy.scenarios.running.engine.task import ReportProgress, Task, Workers
@@ -18,6 +19,7 @@ from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.frame_cache import Film, film
 from peopleboy.scenarios.running.run import is_finished, run, tracker_name
 from peopleboy.scenarios.running.run_options import RunOptions
+from peopleboy.scenarios.running.sample_run import sample_run
 from peopleboy.tracker.tracker_names import is_detection_file, split_name
 from peopleboy.wording import counted
 
@@ -33,15 +35,19 @@ class RunTask:
         scenario: the scenario; None for the random world of the run's seed, which is sampled when it is
             needed, as there may be 100 000 of them.
         options: options of the run.
+        distribution: distribution of the random world; None for the default one.
     """
 
     scenario: Scenario | None
     options: RunOptions
+    distribution: Distribution | None = None
 
     @property
     def played(self) -> Scenario:
         """The scenario of the run."""
-        return random_scenario(self.options.seed) if self.scenario is None else self.scenario
+        if self.scenario is not None:
+            return self.scenario
+        return random_scenario(self.options.seed, distribution=self.distribution)
 
     @property
     def name(self) -> str:
@@ -67,7 +73,10 @@ class RunTask:
         """Run the scenario unless the run is complete; an unfinished run is replaced."""
         if not self.is_finished:
             options = replace(self.options, overwrite=True)
-            run(self.played, options, lambda tick, _frames: report_progress(tick.frame))
+            if options.choice is None:
+                run(self.played, options, lambda tick, _frames: report_progress(tick.frame))
+            else:
+                sample_run(self.played, options, report_progress)
 
 
 _LOG = logging.getLogger(__name__)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
@@ -153,21 +153,10 @@ def _run(
     check_cameras(tracker, config.robot.cameras)
     frames = scenario.frames
     check_detections(name, frames)
-    about = {
-        "scenario": scenario.name,
-        "seed": options.seed,
-        "tracker": shown,
-        "boxes": options.boxes,
-        "renderer": options.renderer,
-        "rate_hz": config.control_hz,
-        "images": options.frames,
-        "planned_frames": frames,
-        "gains": about_gains(config.robot.cameras),
-    } | ({"mounted_for_tracker": mounted} if mounted else {})
+    about = about_run(scenario, options, config, shown)
+    about |= {"mounted_for_tracker": mounted} if mounted else {}
     if episode is not None:
         about["episode"] = episode.to_json()
-    if scenario.own_behaviour is not None:
-        about["behaviour"] = scenario.own_behaviour
     _LOG.info(
         "%s: seed %d, tracker %s, cameras %s, physics %s",
         *(scenario.name, options.seed, shown, ", ".join(config.robot.cameras), config.physics),
@@ -232,6 +221,22 @@ def _run(
     return scores
 
 
+def about_run(scenario: Scenario, options: RunOptions, config: WorldConfig, tracker: str) -> dict[str, Any]:
+    """Return the entries of run.json of a run with this tracker."""
+    about = {
+        "scenario": scenario.name,
+        "seed": options.seed,
+        "tracker": tracker,
+        "boxes": options.boxes,
+        "renderer": options.renderer,
+        "rate_hz": config.control_hz,
+        "images": options.frames,
+        "planned_frames": scenario.frames,
+        "gains": about_gains(config.robot.cameras),
+    }
+    return about if scenario.own_behaviour is None else about | {"behaviour": scenario.own_behaviour}
+
+
 def _score_drive(scenario: Scenario, config: WorldConfig, drive: DriveRecord) -> DriveScores:
     """Score the robot's tasks: that of its behaviour, and comfort if it moved among people."""
     following = corridor = comfort = None
@@ -276,7 +281,7 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
     if options.overwrite or note_on(options.out):
         return False
     scenario = options.applied_to(scenario)
-    run = open_run(options.out)
+    run = open_run(options.out, may_be_sampled=True)
     tracker = tracker_name(scenario, options)
     if run.about.tracker != shown_name(tracker):
         raise BadInput(
@@ -289,6 +294,8 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
     if run.about.behaviour != scenario.own_behaviour:
         was = run.about.behaviour or run.scenario.robot.behaviour
         raise BadInput(f"{options.out}: was run with behaviour {was!r}; give --overwrite, or another --out")
+    if run.about.choice != (None if options.choice is None else options.choice.to_json()):
+        raise BadInput(f"{options.out}: was run with another choice of frames; give another --out")
     if options.frames and not run.about.images:
         return False
     mounted = scenario.mounting(tracker_cameras(tracker))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
+from peopleboy.scenarios.run_folder.frame_choice import FrameChoice
 from peopleboy.tracker.footage.box_kinds import BoxKind
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ class RunOptions:
 
     Attributes:
         viewer: address of a viewer that shows the recording during the run; None for none.
+        choice: frames whose images and ground truth are written; None for a run with all frames.
     """
 
     seed: Annotated[int, Field(ge=0, description="Random seed.")]
@@ -54,6 +56,7 @@ class RunOptions:
         ),
     ] = False
     viewer: str | None = None
+    choice: FrameChoice | None = None
     overwrite: Annotated[bool, Field(description="Replace an earlier run in the output folder.")] = False
 
     def applied_to(self, scenario: "Scenario") -> "Scenario":

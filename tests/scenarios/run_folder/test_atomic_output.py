@@ -9,7 +9,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.draw_plan import draw_plan
-from peopleboy.scenarios.export.make_dataset import of_scenarios, render_set
+from peopleboy.scenarios.export.make_dataset import SetOptions, render_set
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.atomic_output import atomic, atomic_folder
 from peopleboy.scenarios.run_folder.folder import claim_folder
@@ -116,7 +116,7 @@ FOLDERS = {
     "export or track": write_run,
     "run": lambda path: claim_folder(path, overwrite=False),
     "render": lambda path: render_set(
-        of_scenarios(["pass_behind"], range(1)), path, frames=False, tracker="truth", workers=Workers()
+        SetOptions(scenarios=("pass_behind",), seeds=range(1), out=path), Workers()
     ),
 }
 OTHERS = {
