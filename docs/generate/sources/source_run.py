@@ -21,6 +21,7 @@ from peopleboy.studies.reproductions.experiment import (
     Samples,
     Values,
 )
+from peopleboy.studies.reproductions.image_errors import ErrorSummary, ImageErrors
 from peopleboy.studies.reproductions.source_page import PageHead
 
 FOLDER: Final = Path(__file__).parents[2] / "sources"
@@ -112,6 +113,11 @@ def _outcome(number: str, plain: Mapping[str, Any]) -> ExperimentOutcome:
 
 
 def _plain_values(values: Values) -> list[float | None] | dict[str, Any]:
+    if isinstance(values, ImageErrors):
+        summaries = {"splits": values.splits, "blocks": values.blocks}
+        return {name: [_plain_summary(one) for one in several] for name, several in summaries.items()} | {
+            "of_films": values.films
+        }
     if not isinstance(values, Jackknife):
         return _short(np.asarray(values))
     return {
@@ -124,8 +130,15 @@ def _plain_values(values: Values) -> list[float | None] | dict[str, Any]:
 def _values(plain: list[float | None] | Mapping[str, Any]) -> Values:
     if isinstance(plain, list):
         return _long(plain)
+    if "splits" in plain:
+        splits, blocks = (tuple(ErrorSummary(*one) for one in plain[name]) for name in ("splits", "blocks"))
+        return ImageErrors(splits=splits, blocks=blocks, films=plain["of_films"])
     (whole,) = _long([plain["whole"]])
     return Jackknife(float(whole), _long(plain["without"]), tuple(plain["films"]))
+
+
+def _plain_summary(one: ErrorSummary) -> list[Any]:
+    return [one.images, *_short(np.array(one[1:]))]
 
 
 def _short(values: NDArray[np.float64]) -> list[float | None]:
