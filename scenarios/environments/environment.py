@@ -43,8 +43,8 @@ from peopleboy.scenarios.environments.rewards import TASKS, TERMS
 from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.robot import ORACLE
-from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.variation import EpisodeSpec, as_ranges, resized, vary
+from peopleboy.scenarios.files.scenario import Scenario, sampled_faults
+from peopleboy.scenarios.files.variation import ActionChannel, EpisodeSpec, as_ranges, resized, vary
 from peopleboy.scenarios.loop.faults import FaultyTracker, SensorFaults
 from peopleboy.scenarios.loop.loop import TrackerDown
 from peopleboy.scenarios.loop.tracker_by_name import make_checked_tracker, tracker_cameras
@@ -207,8 +207,9 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         config = world.config
         self._calibrations = calibrations_of(config.robot.cameras)
         self._dt_s = 1.0 / config.control_hz
-        self._commands: list[Command] = []
-        faults = self._scenario.spec.faults
+        self._commands: list[NDArray[np.float64]] = []  # (2,) [m/s, rad/s] each
+        faults = (*self._scenario.spec.faults, *sampled_faults(self._seed, self._ranges))
+        self._channel = ActionChannel(self._seed, self._ranges, self._dt_s)
         self._faults = SensorFaults(faults, config.robot.sonar.farthest_m) if faults else None
         self._tracker: Tracker | None = None
         if self._kind == "tracks":
@@ -260,10 +261,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             BadInput: the action is not two finite numbers, or no episode is in progress.
         """
         shares, world = check_actions(action, (2,)), self._running()
-        linear_m_s, angular_rad_s = (shares[0] * self._own["limits"]).tolist()
-        self._commands.append(Command(linear_m_s=linear_m_s, angular_rad_s=angular_rad_s))
-        share = self.disturb()
-        world.step(share * linear_m_s, share * angular_rad_s)
+        world.step(*self.send(shares[0]).tolist())
         tracks = self._perceive(world)
         outcomes = self._episodes.evaluate(self._snapshot, shares, tracks)
         self._truth = outcomes.truths[0]
@@ -301,12 +299,18 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._track = track or self._track
         return track
 
+    def send(self, action: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the speeds (2,) [m/s, rad/s] of the next step for an action (2,), with all disturbances."""
+        command = self._channel.send(action) * self._own["limits"]
+        self._commands.append(command)
+        return np.asarray(self._disturb() * command)
+
     @property
     def has_faults(self) -> bool:
         """Whether sensors fail in the scenario."""
         return self._faults is not None
 
-    def disturb(self) -> float:
+    def _disturb(self) -> float:
         """Disturb the robot at the start of a step, as the scenario's faults ask.
 
         Returns:
@@ -317,12 +321,16 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
     def spoil(self, senses: Senses) -> Senses:
         """Apply the active faults of the scenario to readings."""
-        return senses if self._faults is None else self._faults.apply(senses)
+        if self._faults is None:
+            return senses
+        if isinstance(senses, Observation):
+            senses = replace(senses, calibrations=self._calibrations)
+        return self._faults.apply(senses)
 
     @property
     def tracks(self) -> NDArray[np.float32]:
         """`tracks` (35,) at the last update of the tracker."""
-        return observe_tracks(self._tracks, self._robot)
+        return observe_tracks(self._tracks, self.world.config.robot)
 
     @property
     def seed(self) -> int:
@@ -399,7 +407,9 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             options=self._ranges,
         )
         scenario = self._scenario.as_episode(self._seed, episode)
-        save_episode(scenario, self._commands, options, self._episodes.result(self._number))
+        speeds = np.reshape(self._commands, (-1, 2)).tolist()
+        commands = [Command(linear_m_s=ahead, angular_rad_s=turn) for ahead, turn in speeds]
+        save_episode(scenario, commands, options, self._episodes.result(self._number))
         return folder
 
     def close(self) -> None:

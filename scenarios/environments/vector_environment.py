@@ -309,15 +309,15 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         """Step the worlds whose episodes are under way."""
         if self._together is None:
             self._together = WorldBatch([env.world for env in self.envs], self._crew)
-        commands = (shares * self._episodes.records["limits"])[active]
+        commands = np.array([self.envs[number].send(shares[number]) for number in active.tolist()])
+        snapshots = self._together.step(active, commands.reshape(-1, 2))
         if not any(env.has_faults for env in self.envs):
-            return self._together.step(active, commands)
-        commands *= np.array([[self.envs[number].disturb()] for number in active.tolist()])
+            return snapshots
         return [
             each.with_senses(
                 [self.envs[k].spoil(each.senses(row)) for row, k in enumerate(each.numbers.tolist())]
             )
-            for each in self._together.step(active, commands)
+            for each in snapshots
         ]
 
     def _track(self, snapshot: Snapshot) -> list[int] | None:

@@ -68,7 +68,7 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
     kept, skips = set(run.kept_frames), run.is_sampled and not run.scenario.needs_every_frame
     last = max(kept, default=0)
     with SimulatedWorld(run.world) as world:
-        stage = FaultySensors(world, run.scenario.spec.faults)
+        stage = FaultySensors(world, run.scenario.faults)
         for row in files.robot.to_pylist()[:last]:
             frame = row["frame"]
             command = _command(row)

@@ -20,8 +20,8 @@ from peopleboy.scenarios.files.own_files import read_own_files
 from peopleboy.scenarios.files.people import PersonSpec, assign_distinct_colours, make_config, resolve_person
 from peopleboy.scenarios.files.recorded_drives import KEPT, Repeat, pack_drive, read_drive
 from peopleboy.scenarios.files.robot import RobotSpec
-from peopleboy.scenarios.files.scenario_file import DrawnSpec, ScenarioSpec, to_data
-from peopleboy.scenarios.files.variation import EpisodeSpec
+from peopleboy.scenarios.files.scenario_file import DrawnSpec, Failure, FaultSpec, ScenarioSpec, to_data
+from peopleboy.scenarios.files.variation import FAULTS, EpisodeSpec, sample_options
 from peopleboy.sim.cameras.kinds import KINDS, flat_geometry
 from peopleboy.sim.physics.physics_engine import PHYSICS, PhysicsName
 from peopleboy.sim.places.floor_plan import FloorPlan
@@ -96,6 +96,12 @@ class Scenario:
         return None if self.spec.drawn is None else self.spec.drawn.episode
 
     @property
+    def faults(self) -> tuple[FaultSpec, ...]:
+        """Faults of the file, and those that were sampled for the episode that a run repeats."""
+        sampled = () if self.episode is None else sampled_faults(self.seed, self.episode.options)
+        return (*self.spec.faults, *sampled)
+
+    @property
     def seed(self) -> int:
         """The seed of the run that wrote this scenario file; 0 for any other file."""
         return 0 if self.spec.drawn is None else self.spec.drawn.seed
@@ -121,7 +127,7 @@ class Scenario:
     @property
     def needs_every_frame(self) -> bool:
         """Whether images of later frames depend on those of all earlier ones, so that none can be skipped."""
-        return self.needs_tracker or bool(self.spec.faults)
+        return self.needs_tracker or bool(self.faults)
 
     def people(self, seed: int) -> tuple[PersonSpec, ...]:
         """Return all people, including group members, resolved with a seed.
@@ -271,6 +277,13 @@ class Scenario:
     def kept_files(self) -> dict[str, bytes]:
         """Return the contents of all files that the resolved scenario refers to, by relative path."""
         return dict(self.files) | ({} if self.drive is None else {KEPT: pack_drive(self.drive)})
+
+
+def sampled_faults(seed: int, ranges: Mapping[str, list[float]]) -> tuple[FaultSpec, ...]:
+    """Return the faults that the options of an episode ask for, see `peopleboy.scenarios.files.variation`."""
+    drawn, _ = sample_options(seed, ranges)
+    kinds: tuple[Failure, ...] = FAULTS
+    return tuple(FaultSpec(kind=kind, from_s=0.0, strength=drawn[kind]) for kind in kinds if drawn.get(kind))
 
 
 def make_scenario(spec: ScenarioSpec, folder: Path, *, is_checked: bool = True) -> Scenario:

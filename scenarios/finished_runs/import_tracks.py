@@ -158,7 +158,7 @@ def import_tracks(what: TrackImport, report: Callable[[int, int], None]) -> RunS
 
             path = part / "recording.rrd"
             recorder = stack.enter_context(Recorder(path, run.world, title=title, watched=(what.camera,)))
-        observers = RunObservers(run.world, title, recorder, faults=run.scenario.spec.faults)
+        observers = RunObservers(run.world, title, recorder, faults=run.scenario.faults)
         for played in replay(run):
             why, theirs = whys.get(played.frame, ""), tracks.get(played.frame, ())
             tick = replace(played, tracks=theirs, explanation=None, reason=why)

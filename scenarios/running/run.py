@@ -193,7 +193,7 @@ def _run(
                     is_lossless=options.lossless,
                 )
             )
-        faults, is_secret = scenario.spec.faults, scenario.drive is not None
+        faults, is_secret = scenario.faults, scenario.drive is not None
         observers = RunObservers(config, title, recorder, options.boxes, faults=faults, is_secret=is_secret)
         _LOG.info("%s: the world is built; running %d frames", scenario.name, frames)
         began_s = time.monotonic()

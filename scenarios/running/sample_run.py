@@ -81,7 +81,7 @@ def _every_tick(
     world: SimulatedWorld, scenario: Scenario, tracker: CheckedTracker, picker: FramePicker
 ) -> Iterator[tuple[Tick, bool]]:
     """Yield each tick of a robot that needs its images, and whether the frame is chosen."""
-    faults = scenario.spec.faults
+    faults = scenario.faults
     stage, eyes = FaultySensors(world, faults), FaultyTracker(tracker, faults)
     for tick in closed_loop(stage, eyes, scenario.make_behaviour(), scenario.frames):
         is_chosen = picker.takes(tick.frame, visible_people(tick.truth.people))

@@ -87,6 +87,14 @@ OPTIONS = {
     "pace": (0.5, 0.8),
     "facing": True,
     "people": 1,
+    "camera_pitch_deg": (-5.0, 5.0),
+    "camera_height_m": -0.2,
+    "action_noise": 0.2,
+    "latency_s": (0.1, 0.3),
+    "wheel_slip": (0.1, 0.3),
+    "odometry_drift": 0.1,
+    "calibration_turned": (1.0, 3.0),
+    "calibration_off": 0.02,
 }
 
 
