@@ -71,7 +71,7 @@ class SourceRun:
         }
         places = list(EXPERIMENTS)
         every = sorted((*kept.outcomes, *later.outcomes), key=lambda one: places.index(one.experiment.id))
-        return SourceRun(replace(self.head, facts=facts), tuple(every))
+        return SourceRun(replace(self.head, facts=facts, command=later.head.command), tuple(every))
 
     def write(self, folder: Path = FOLDER) -> None:
         """Write the run to a file."""
