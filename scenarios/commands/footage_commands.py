@@ -22,7 +22,7 @@ from peopleboy.scenarios.commands.command_options import (
     print_note,
 )
 from peopleboy.tracker.tracker_names import with_detector
-from peopleboy.tracker.trackers import DEFAULT_TRACKER
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, LIVE_TRACKER
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.finished_runs.import_tracks import TrackImport
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
 
 _TRACKERS = (
-    "detection, contour, learned, thesis, colour, thermal, paper, rgbd or rgbd-printed (both with --depth), "
-    "or module:Class (your own)"
+    "detection, detection-live, contour, learned, thesis, colour, thermal, paper, rgbd or rgbd-printed (both "
+    "with --depth), or module:Class (your own)"
 )
 
 
@@ -56,7 +56,7 @@ class _Footage(PlainPath):
     is_flag=True,
     help="Show images and tracks in the rerun viewer while tracking; without a display, on a local web page.",
 )
-@options_of("tracker.footage.grey:Radiometry", "span_c", "is_inverted", into="thermal")
+@options_of("tracker.footage.grey:Radiometry", "span_c", "polarity", into="thermal")
 @click.option(
     "--scale",
     metavar="GAIN,OFFSET",
@@ -76,7 +76,8 @@ class _Footage(PlainPath):
 @options_of(
     "scenarios.footage.options:TrackOptions",
     *("rate_hz", "timestamps", "tracker", "truth", "protocol", "boxes", "seed", "video", "overwrite"),
-    tracker=f"Tracker to use: {_TRACKERS}.  [default: detection, or rgbd with --depth]",
+    tracker=f"Tracker to use: {_TRACKERS}.  [default: detection, detection-live for a live source, or rgbd "
+    "with --depth]",
 )
 @click.option("--detector", help=DETECTOR)
 @click.option(
@@ -117,9 +118,9 @@ def track(
     from peopleboy.scenarios.footage.options import RGBD_TRACKER, parse_start
     from peopleboy.tracker.footage.grey import parse_scale
 
-    usual = DEFAULT_TRACKER if rgbd.depth is None else RGBD_TRACKER
-    tracker = usual if given.tracker is None else given.tracker
     source = _source(footage, raw)
+    usual = DEFAULT_TRACKER if isinstance(source, Path) else LIVE_TRACKER
+    tracker = given.tracker or (usual if rgbd.depth is None else RGBD_TRACKER)
     options = given.make(
         footage=source,
         **{**files.values, "out": files.out or _default_out(source)},

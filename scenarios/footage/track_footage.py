@@ -22,6 +22,7 @@ from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.latency import write_latency
 from peopleboy.tracker.footage.box_kinds import BoxKind, torso_of
 from peopleboy.tracker.footage.footage_truth import GivenTruth, doubts, find_truth, load_truth
+from peopleboy.tracker.footage.grey import Polarity
 from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
 from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from peopleboy.tracker.track import Track
@@ -239,7 +240,8 @@ def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:
 def _what_to_look_at(options: TrackOptions) -> str:
     if options.rgbd is not None:
         return _what_depth_asks(options.rgbd)
-    remedy = "leave --black-hot out" if options.radiometry.is_inverted else "give --black-hot"
+    is_black_hot = options.radiometry.polarity is Polarity.BLACK_HOT
+    remedy = f"give --polarity {Polarity.WHITE_HOT if is_black_hot else Polarity.BLACK_HOT}"
     asked = f"are warm objects bright? If not, {remedy}."
     if options.tracker in VARIANTS:
         asked += f" Are people {_heights(options.tracker)} of the image height, from head to feet?"

@@ -1,7 +1,8 @@
 """Read footage of any kind as frames: thermal with optional colour, or colour with depth."""
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import zip_longest
+from dataclasses import replace
+from itertools import chain, islice, zip_longest
 from pathlib import Path
 from typing import Any, Final, Protocol
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.scenarios.drawing.overlay import Picture, show_thermal
+from peopleboy.scenarios.footage.detect_polarity import LOOK_AHEAD, detect_polarity
 from peopleboy.scenarios.footage.options import (
     DEFAULT_RATE_HZ,
     RgbdOptions,
@@ -19,7 +21,7 @@ from peopleboy.scenarios.footage.options import (
     colour_picture,
 )
 from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
-from peopleboy.tracker.footage.grey import Radiometry
+from peopleboy.tracker.footage.grey import Polarity, Radiometry, one_channel
 from peopleboy.tracker.footage.image_sequences import Footage, PictureFolder, folders_in, open_footage
 from peopleboy.tracker.footage.live_footage import LiveFootage, LiveSource
 from peopleboy.tracker.footage.picture_names import offsets_of, pictures_in
@@ -160,7 +162,7 @@ def _numbers(count: int) -> list[str]:
 def _check_kind(options: TrackOptions) -> None:
     if options.colour is not None or options.radiometry != Radiometry():
         raise BadInput(
-            "--depth: --colour, --temperature-range, --scale and --black-hot are for thermal images only; "
+            "--depth: --colour, --temperature-range, --scale and --polarity are for thermal images only; "
             "FOLDER itself holds the colour images"
         )
 
@@ -205,9 +207,7 @@ class ThermalViews:
         if options.tracker == COLOUR_TRACKER and options.colour is None:
             raise BadInput("--tracker colour: needs --colour FOLDER; add it, or give --tracker thermal")
         self._options = options
-        self._images = ThermalImages(
-            options.radiometry, by_contrast=uses_contrast(options.tracker), where=str(options.footage)
-        )
+        self._images: ThermalImages | None = None
         self._footage: Footage
         self.stop: Callable[[], None] | None = None
         if isinstance(options.footage, LiveSource):
@@ -264,7 +264,8 @@ class ThermalViews:
     def notes(self) -> list[str]:
         """Notes on the interpretation of the inputs."""
         colour = [] if self._colour is None else self._colour.notes
-        return [*self._footage.notes, *self._images.notes, *colour]
+        images = [] if self._images is None else self._images.notes
+        return [*self._footage.notes, *images, *colour]
 
     def __iter__(self) -> Iterator[Frame]:
         """Yield frames with thermal images, and with colour images if there are any.
@@ -272,13 +273,40 @@ class ThermalViews:
         Raises:
             BadInput: an image is unusable, or the numbers of thermal and colour images differ.
         """
-        for number, (thermal, picture) in enumerate(self._pictures()):
+        pictures = self._pictures()
+        first = list(islice(pictures, self._look_ahead))
+        self._images = ThermalImages(
+            self._radiometry([thermal for thermal, _ in first]),
+            by_contrast=uses_contrast(self._options.tracker),
+            where=str(self._options.footage),
+        )
+        for number, (thermal, picture) in enumerate(chain(first, pictures)):
             if number == 0:
                 check_start(thermal, self._options)
             colour = None if picture is None else colour_picture(picture, "--colour")
             yield self._images.frame(thermal, self._time_s(number), colour)
         if isinstance(self._footage, LiveFootage):
             self.rate_hz = _rate_of(self._footage.times_s) or self.rate_hz
+
+    @property
+    def _look_ahead(self) -> int:
+        """Number of images that are needed to begin."""
+        radiometry = self._options.radiometry
+        is_asked = radiometry.polarity is None and not radiometry.is_known and self.stop is None
+        return LOOK_AHEAD if is_asked else 0
+
+    def _radiometry(self, first: Sequence[NDArray[Any]]) -> Radiometry:
+        """Return the meaning of the pixels, with the polarity of 8-bit images if it was detected."""
+        radiometry = self._options.radiometry
+        if not first or first[0].dtype != np.uint8:
+            return radiometry
+        if detect_polarity([one_channel(image, []) for image in first]) is not Polarity.BLACK_HOT:
+            return radiometry
+        self._footage.notes.append(
+            "people are darker than what is around them, so dark pixels are taken as warm; if people are "
+            "colder than it, give --polarity white-hot"
+        )
+        return replace(radiometry, polarity=Polarity.BLACK_HOT)
 
     def _pictures(self) -> Iterator[tuple[NDArray[Any], NDArray[Any] | None]]:
         here, there = self._options.footage, self._options.colour

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import partial
 from typing import Annotated, Any, Final
 
@@ -101,6 +102,13 @@ _SWAPPED: Final = 8.0  # ratio of the mean steps between neighbours from which b
 _ALIKE: Final = 12  # greatest difference between channels of a grey picture, after a lossy codec
 
 
+class Polarity(StrEnum):
+    """Grey of warm objects."""
+
+    WHITE_HOT = "white-hot"
+    BLACK_HOT = "black-hot"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Radiometry:
     """Conversion of pixels to degC, if known.
@@ -118,7 +126,13 @@ class Radiometry:
         Metavar("LOW HIGH"),
     ] = None
     scale: tuple[float, float] | None = None
-    is_inverted: Annotated[bool, Field(alias="black_hot", description="Treat dark pixels as warm.")] = False
+    polarity: Annotated[
+        Polarity | None,
+        Field(
+            description="Whether warm pixels are bright (white-hot) or dark (black-hot).  [default: detected "
+            "in recorded 8-bit images, otherwise white-hot]"
+        ),
+    ] = None
 
     def __post_init__(self) -> None:
         if self.span_c is not None and self.scale is not None:
@@ -127,9 +141,10 @@ class Radiometry:
             raise BadInput(f"--temperature-range must be LOW < HIGH, got {self.span_c[0]} {self.span_c[1]}")
         if self.scale is not None and not (np.isfinite(self.scale).all() and self.scale[0] > 0):
             raise BadInput(f"--scale must be a positive gain and an offset, got {self.scale}")
-        if self.scale is not None and self.is_inverted:
+        if self.scale is not None and self.polarity is Polarity.BLACK_HOT:
             raise BadInput(
-                "--black-hot is for grey; counts that --scale reads grow with temperature, leave one out"
+                "--polarity black-hot is for grey; counts that --scale reads grow with temperature, "
+                "leave one out"
             )
 
     @property
@@ -152,7 +167,7 @@ class Radiometry:
                 "--scale is for 16-bit or float pictures, got 8-bit ones; give --temperature-range"
             )
         values = flat.astype(np.float32)
-        if self.is_inverted:
+        if self.polarity is Polarity.BLACK_HOT:
             values = (255.0 if is_eight_bit else 65535.0 if flat.dtype == np.uint16 else 0.0) - values
         gain, offset = self._line()
         return values * np.float32(gain) + np.float32(offset)

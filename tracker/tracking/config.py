@@ -336,6 +336,11 @@ _ALL_ROUND: Final = ExistenceConfig(
 )
 _UNKNOWN_IS_OTHER: Final = ReidentificationConfig(colour_unknown=-2.0, least=1.0)
 
+LIVE: Final = PeopleTrackerConfig(
+    schedule_uncalibrated=DetectionScheduleConfig(unsettled_s=0.045, settled_s=0.045, anew_s=0.0)
+)
+"""Settings for cameras of 25 Hz or more, of which every second image or fewer are searched as a whole."""
+
 ATTENTIVE: Final = PeopleTrackerConfig(
     existence=ExistenceConfig(forget_s=600.0),
     reidentification=ReidentificationConfig(colour_unknown=-2.0),

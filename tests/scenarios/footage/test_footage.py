@@ -11,12 +11,13 @@ from click.testing import CliRunner
 from PIL import Image
 
 from peopleboy.scenarios.commands.inspect_commands import evaluate
+from peopleboy.scenarios.footage.detect_polarity import detect_polarity
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import pictures_a_second, track_footage
 from peopleboy.tracker.evaluation.table import NEED_EVERYBODY
 from peopleboy.tracker.footage.box_kinds import TORSO_PER_HEIGHT, WHOLE_PER_HEIGHT, BoxKind
 from peopleboy.tracker.footage.footage_truth import find_truth, load_truth
-from peopleboy.tracker.footage.grey import AutomaticGrey, Radiometry, grey_maker, parse_scale
+from peopleboy.tracker.footage.grey import AutomaticGrey, Polarity, Radiometry, grey_maker, parse_scale
 from peopleboy.tracker.footage.image_sequences import open_footage
 from peopleboy.tracker.footage.picture_names import natural_order
 from tests.helpers.calls.footage_calls import call, refusal
@@ -128,7 +129,7 @@ def test_sixteen_bits_without_scale_fall_back_to_the_scenes_contrast_and_say_so(
 def test_black_hot_footage_turned_round_is_the_same_as_white_hot():
     grey, inverted = walker(3), 255 - walker(3)
     np.testing.assert_array_equal(
-        Radiometry().values(grey, []), Radiometry(is_inverted=True).values(inverted, [])
+        Radiometry().values(grey, []), Radiometry(polarity=Polarity.BLACK_HOT).values(inverted, [])
     )
 
 
@@ -359,3 +360,25 @@ def test_speed_is_that_of_pictures_for_which_nothing_is_compiled() -> None:
     assert pictures_a_second([0.0, *done]) == pytest.approx(10.0)
     assert pictures_a_second([0.0, 20.0, 20.5]) == pytest.approx(2.0)
     assert pictures_a_second([0.0, 20.0]) == pytest.approx(0.05)  # there is no other
+
+
+def test_black_hot_images_are_detected_and_tracked_like_white_hot_ones(tmp_path):
+    write_folder(tmp_path / "white", 16)
+    (tmp_path / "black").mkdir()
+    for number in range(16):
+        cv2.imwrite(str(tmp_path / "black" / f"frame{number + 1}.png"), 255 - walker(number))
+    told = {}
+    for name in ("white", "black"):
+        result = call(tmp_path / name, "--out", tmp_path / f"{name}-out")
+        told[name] = result.stderr
+        assert result.exit_code == 0
+    assert "dark pixels are taken as warm" in told["black"]
+    assert "dark pixels" not in told["white"]
+    tracks = [(tmp_path / f"{name}-out" / "tracks.txt").read_text() for name in told]
+    assert tracks[0] == tracks[1] != ""
+    given = call(tmp_path / "black", "--out", tmp_path / "given", "--polarity", "white-hot")
+    assert "dark pixels" not in given.stderr
+
+
+def test_the_polarity_of_images_without_people_is_unknown():
+    assert detect_polarity([np.full((120, 160), 60, np.uint8)] * 3) is None

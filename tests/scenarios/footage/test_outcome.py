@@ -5,7 +5,7 @@ import pytest
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import Tracked, outcome_lines
 from peopleboy.tracker.footage.box_kinds import BoxKind
-from peopleboy.tracker.footage.grey import Radiometry
+from peopleboy.tracker.footage.grey import Polarity, Radiometry
 from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from tests.helpers.calls.footage_calls import call
 from tests.helpers.calls.refused import assert_names
@@ -37,7 +37,7 @@ def test_if_nobody_is_found_that_is_said_with_what_to_look_at(tmp_path):
     assert "3 frames, 0 tracks" in told
     assert "shows them" not in told
     assert str(out / "contact_sheet.png") in told
-    assert "--black-hot" in told
+    assert "--polarity black-hot" in told
 
 
 @pytest.mark.parametrize("name", VARIANTS)
@@ -61,14 +61,14 @@ def test_who_told_no_temperatures_to_the_tracker_that_knows_them_is_told_how(tmp
     assert "--temperature-range" not in told
 
 
-def test_who_gave_black_hot_is_told_to_leave_it_out(tmp_path):
-    options = TrackOptions(footage=tmp_path, out=tmp_path, radiometry=Radiometry(is_inverted=True))
-    assert "--black-hot" in outcome_lines(tracked(tracks=0), options)[1]
+def test_after_black_hot_the_advice_is_white_hot(tmp_path):
+    options = TrackOptions(footage=tmp_path, out=tmp_path, radiometry=Radiometry(polarity=Polarity.BLACK_HOT))
+    assert "--polarity white-hot" in outcome_lines(tracked(tracks=0), options)[1]
 
 
 def test_of_a_tracker_of_ones_own_no_heights_are_known(tmp_path):
     options = TrackOptions(footage=tmp_path, out=tmp_path, tracker="mine:Tracker")
-    assert_names(outcome_lines(tracked(tracks=0), options)[1], "contact_sheet.png", "--black-hot")
+    assert_names(outcome_lines(tracked(tracks=0), options)[1], "contact_sheet.png", "--polarity black-hot")
 
 
 def test_one_is_not_a_plural(tmp_path):

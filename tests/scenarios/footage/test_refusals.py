@@ -78,8 +78,8 @@ def test_a_video_that_is_none_is_refused_on_one_line_and_no_library_adds_another
 
 def test_counts_of_temperatures_are_never_black_hot(tmp_path):
     clip = write_counts(tmp_path / "clip", 3)
-    told = refusal(clip, "--out", tmp_path / "out", "--scale", "centikelvin", "--black-hot")
-    assert_names(told, "--black-hot", "--scale")
+    told = refusal(clip, "--out", tmp_path / "out", "--scale", "centikelvin", "--polarity", "black-hot")
+    assert_names(told, "--polarity", "--scale")
 
 
 @pytest.mark.parametrize(

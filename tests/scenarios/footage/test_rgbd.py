@@ -193,7 +193,7 @@ def test_a_scale_that_cannot_be_is_refused(tmp_path: Path, scale: str) -> None:
     [
         (("--tracker", "contour"), ("contour", "'thermal'", "--depth")),
         (("--tracker", "handover"), ("handover", "'thermal'")),
-        (("--black-hot",), ("--depth", "--black-hot")),
+        (("--polarity", "black-hot"), ("--depth", "--polarity")),
         (("--scale", "centikelvin"), ("--depth", "--scale")),
         (("--start", "10,10,20,20"), ("--start", "rgbd")),
         (("--focal-px", 300, "--vertical-fov-deg", 40), ("--focal-px", "--vertical-fov-deg")),
