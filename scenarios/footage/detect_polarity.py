@@ -22,7 +22,7 @@ _CLEARLY: Final = 1.15
 _MOST: Final = 0.75
 """Share of the images with people that must agree."""
 _LEAST: Final = 2.0
-"""Sum of log-odds per image from which there is evidence: faint people in a hot room may be colder than it."""
+"""Sum of log-odds per image from which there is evidence; faint people may be colder than a hot room."""
 
 
 def detect_polarity(images: Sequence[NDArray[np.uint8]]) -> Polarity | None:
