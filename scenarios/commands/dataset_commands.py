@@ -42,7 +42,7 @@ _CHOICE_FIELDS: Final = (
 @click.argument("scenarios", metavar="[SCENARIO...]", nargs=-1, shell_complete=complete_scenario)
 @options_of(
     "scenarios.export.make_dataset:SetOptions",
-    *("frames", "random_worlds", "out", "tracker"),
+    *("frames", "random_worlds", "distribution", "only", "camera_height_m", "pitch_deg", "out", "tracker"),
     tracker=f"Tracker for robots that follow people: {TRACKERS}.  [default: truth]",
 )
 @options_of(_CHOICE, *_CHOICE_FIELDS, into="choice")

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.export.dataset_checks import Check
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES
+from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.run_folder.image_files import describe_images
 from peopleboy.scenarios.run_folder.run_tables import LOCAL, is_in_image
@@ -149,6 +149,7 @@ def write_datasheet(
     checks: Sequence[Check],
     about: Mapping[str, Any],
     scenarios: Sequence[Scenario],
+    distribution: Distribution,
 ) -> None:
     """Write the datasheet of a set.
 
@@ -159,6 +160,7 @@ def write_datasheet(
         about: arguments of the command, images, tracker, versions, size_mb, empty splits, and for random
             worlds histograms of the sampled values.
         scenarios: the scenarios of the runs.
+        distribution: distribution of the random worlds, if they are random.
     """
     environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters |= {"span": _span, "quote": shlex.quote}
@@ -169,9 +171,8 @@ def write_datasheet(
         checks=checks,
         about=about,
         scenarios=scenarios,
-        ranges=RANGES,
-        shares=SHARES,
-        odds=ODDS,
+        shares=distribution.shares,
+        odds=distribution.odds,
         images=describe_images(outfits),
         units=_units(outfits),
         folders=_folders(outfits),

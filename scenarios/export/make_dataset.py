@@ -4,11 +4,11 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.export.dataset_checks import Check, check_set
 from peopleboy.scenarios.export.datasheet import Statistics, measure, write_datasheet
 from peopleboy.scenarios.export.splits import (
@@ -21,6 +21,7 @@ from peopleboy.scenarios.export.splits import (
     split_of,
 )
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.random_worlds.distribution import Distribution, narrowed
 from peopleboy.scenarios.random_worlds.drawn_values import drawn_values, histograms
@@ -31,6 +32,7 @@ from peopleboy.scenarios.run_folder.frame_choice import FrameChoice
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run_options import RunOptions
+from peopleboy.settings import Metavar
 from peopleboy.sim.physics.physics_engine import check_physics
 
 
@@ -82,12 +84,13 @@ def of_scenarios(scenarios: Sequence[str], seeds: range) -> SetContents:
     )
 
 
-def of_worlds(seeds: range, given: Mapping[str, Any] | None = None) -> SetContents:
+def of_worlds(seeds: range, given: Mapping[str, Any] | None = None, asked: Sequence[str] = ()) -> SetContents:
     """Return the contents of a set of random worlds, one for each seed.
 
     Args:
         seeds: seeds of the worlds.
         given: parts of the distribution that are replaced, see `narrowed`; None for none.
+        asked: options of the command that replace them.
 
     Raises:
         BadInput: the distribution is invalid.
@@ -95,7 +98,7 @@ def of_worlds(seeds: range, given: Mapping[str, Any] | None = None) -> SetConten
     given = given or {}
     return SetContents(
         members=tuple(Member(None, seed, world_name(seed)) for seed in seeds),
-        asked=("--random-worlds",),
+        asked=("--random-worlds", *asked),
         about={"random_worlds": True} | ({"distribution": given} if given else {}) | _about(seeds),
         lacking=lacking_splits(seeds),
         distribution=narrowed(given),
@@ -108,6 +111,14 @@ def _about(seeds: range) -> dict[str, int]:
 
 DRAWN: Final = "drawn.json"
 """File with the sampled values of each random world of a set."""
+
+
+_PLACES: Final = {
+    "rooms": ["room"],
+    "corridors": ["corridor", "l_corridor", "t_corridor"],
+    "streets": ["street"],
+}
+"""Kinds of places in the distribution of random worlds, by value of `--only`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,6 +137,32 @@ class SetOptions:
     random_worlds: Annotated[
         bool, Field(description="Render one random world per seed instead of scenarios.")
     ] = False
+    distribution: Annotated[
+        Path | None,
+        Field(
+            description="YAML file with parts of the distribution of random worlds to replace, such as "
+            "`people: [1, 4]`."
+        ),
+    ] = None
+    only: Annotated[
+        Literal["rooms", "corridors", "streets"] | None,
+        Field(description="Kind of place of all random worlds.  [default: all kinds]"),
+    ] = None
+    camera_height_m: Annotated[
+        tuple[float, float] | None,
+        Field(
+            description="Range of the height of the cameras in random worlds, in m.  [default: 0.4 to 1.8]"
+        ),
+        Metavar("LOW HIGH"),
+    ] = None
+    pitch_deg: Annotated[
+        tuple[float, float] | None,
+        Field(
+            description="Range of the pitch of the cameras in random worlds, in degrees; positive is down."
+            "  [default: -15 to 15]"
+        ),
+        Metavar("LOW HIGH"),
+    ] = None
     seeds: range = range(100)
     out: Annotated[
         Path | None,
@@ -144,7 +181,43 @@ class SetOptions:
             raise BadInput("render: give either scenarios or --random-worlds")
         if not self.choice.is_all and not self.frames:
             raise BadInput(f"{self.choice.options()}: chooses images; give --frames as well")
-        return of_worlds(self.seeds) if self.random_worlds else of_scenarios(self.scenarios, self.seeds)
+        if self.random_worlds:
+            return of_worlds(self.seeds, self._given(), self._asked_of_worlds())
+        for option in (asked for asked in self._asked_of_worlds() if asked.startswith("--")):
+            raise BadInput(f"{option}: applies to random worlds; give --random-worlds, or omit the option")
+        return of_scenarios(self.scenarios, self.seeds)
+
+    def _given(self) -> dict[str, Any]:
+        """Return the parts of the distribution to replace; options override the file.
+
+        Raises:
+            BadInput: the file cannot be read, or a name or value in it is invalid.
+        """
+        given = {} if self.distribution is None else read_yaml(self.distribution)
+        with found_in(file=str(self.distribution)):
+            narrowed(given)
+        options = {
+            "only": ("place", None if self.only is None else _PLACES[self.only]),
+            "camera-height-m": ("camera_height", self.camera_height_m),
+            "pitch-deg": ("pitch", self.pitch_deg),
+        }
+        for option, (name, value) in options.items():
+            if value is not None:
+                with found_in(f"--{option}"):
+                    narrowed({name: list(value)})
+                given[name] = list(value)
+        return given
+
+    def _asked_of_worlds(self) -> tuple[str, ...]:
+        """Return the options of random worlds as arguments of the command."""
+        options = {
+            "--distribution": None if self.distribution is None else [self.distribution],
+            "--only": None if self.only is None else [self.only],
+            "--camera-height-m": self.camera_height_m,
+            "--pitch-deg": self.pitch_deg,
+        }
+        asked = ((flag, *map(str, values)) for flag, values in options.items() if values is not None)
+        return tuple(word for words in asked for word in words)
 
     def folder(self, contents: SetContents) -> Path:
         """Return the folder of the set."""
@@ -243,20 +316,21 @@ def render_set(options: SetOptions, workers: Workers) -> RenderedSet:
     )
     about = {**contents.about, "images": options.frames, "tracker": options.tracker, "versions": versions()}
     about |= {} if choice is None else {"choice": choice.to_json()}
-    scenarios = list(dict.fromkeys(task.played for task in tasks))
-    drawn = {}
+    scenarios = list(dict.fromkeys(member.scenario for member in members if member.scenario is not None))
+    drawn, distribution = {}, contents.distribution or Distribution()
     if contents.distribution is not None:
-        worlds = zip(scenarios, numbers, strict=True)
-        drawn = {world.name: drawn_values(world.resolved(seed)) for world, seed in worlds}
+        # Reading a world from its folder is faster than to sample it again.
+        scenarios = [load_scenario(run / "scenario.yaml") for run in runs]
+        drawn = {run.name: drawn_values(read_yaml(run / "scenario.yaml")) for run in runs}
         (folder / DRAWN).write_text(json.dumps(drawn, indent=1) + "\n", encoding="utf-8")
     content = about | {
         "asked": options.asked(contents),
         "choice": choice,
         "size_mb": done.size_mb,
         "lacking": done.lacking,
-        "drawn": histograms(list(drawn.values())),
+        "drawn": histograms(list(drawn.values()), distribution),
     }
-    write_datasheet(folder / "README.md", done.statistics, done.checks, content, scenarios)
+    write_datasheet(folder / "README.md", done.statistics, done.checks, content, scenarios, distribution)
     _write_about(done, about)
     return done
 

@@ -188,7 +188,7 @@ def narrowed(given: object) -> Distribution:
 
     Args:
         given: for a name in `RANGES`, a number, or a pair within its limits; for a name in `SHARES`, one of
-            its values; for a name in `ODDS`, a probability, 0..1.
+            its values, a list of them, or their weights by value; for a name in `ODDS`, a probability, 0..1.
 
     Raises:
         BadInput: a name is unknown, or a value is outside its limits.
@@ -221,9 +221,17 @@ def _range(usual: Range, value: Any) -> Range:
 
 
 def _share(usual: Mapping[str, float], value: Any) -> Mapping[str, float]:
-    if value not in list(usual):
-        raise BadInput(f"unknown value {value!r}; choose from {', '.join(usual)}")
-    return {str(value): 1.0}
+    """Return the probabilities of some values: of one, of several as usual among them, or by weights."""
+    names = list(value) if isinstance(value, list | tuple | Mapping) else [value]
+    for name in names or [value]:
+        if name not in list(usual):
+            raise BadInput(f"unknown value {name!r}; choose from {', '.join(usual)}")
+    weights = value if isinstance(value, Mapping) else {name: usual[name] for name in names}
+    if not all(is_number(weight, is_whole=False) and weight >= 0.0 for weight in weights.values()):
+        raise BadInput(f"{value!r} must have weights of 0 or more")
+    if not (total := math.fsum(weights.values())):
+        raise BadInput(f"{value!r} must have a weight above 0")
+    return {str(name): weight / total for name, weight in weights.items()}
 
 
 def _odds(value: Any) -> float:

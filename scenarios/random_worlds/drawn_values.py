@@ -9,7 +9,7 @@ import numpy as np
 
 from peopleboy.scenarios.files.people import PersonSpec, make_config
 from peopleboy.scenarios.files.validation import validated
-from peopleboy.scenarios.random_worlds.distribution import RANGES, SHARES, Range
+from peopleboy.scenarios.random_worlds.distribution import Distribution, Range
 from peopleboy.sim.people.appearance.finisher import appearance_stream, draw_bearing
 
 Values = dict[str, list[float] | list[str]]
@@ -103,8 +103,12 @@ def _bearings(people: Sequence[Mapping[str, Any]], seed: int) -> dict[str, list[
     }
 
 
-def histograms(worlds: Sequence[Values]) -> list[tuple[str, str, str]]:
+def histograms(worlds: Sequence[Values], distribution: Distribution) -> list[tuple[str, str, str]]:
     """Count the sampled values of many worlds.
+
+    Args:
+        worlds: values of each world.
+        distribution: the distribution that they were sampled from.
 
     Returns:
         For each value: its description, its range with unit or the number of samples, and the counts as text,
@@ -114,8 +118,8 @@ def histograms(worlds: Sequence[Values]) -> list[tuple[str, str, str]]:
     rows = []
     for name in names:
         values = [value for world in worlds for value in world.get(name, [])]
-        spread = RANGES.get(name)
-        if name in SHARES or spread is None or any(isinstance(value, str) for value in values):
+        spread = distribution.ranges.get(name)
+        if name in distribution.shares or spread is None or any(isinstance(value, str) for value in values):
             rows.append((name, f"{len(values)} drawn", _counts(map(str, values))))
         else:
             rows.append((spread.what, _span(spread), _bars(np.array(values, np.float64), spread)))
@@ -128,6 +132,8 @@ def _counts(values: Iterable[str]) -> str:
 
 def _bars(values: Any, spread: Range) -> str:
     """Count values in equal bins of their range; whole numbers with a small range get one bin each."""
+    if spread.low == spread.high:
+        return str(len(values))
     bars = int(spread.high - spread.low) + 1 if spread.is_whole and spread.high <= 12 else _BARS
     edges = np.linspace(spread.low, spread.high + spread.is_whole, bars + 1)
     inside = np.clip(values, spread.low, np.nextafter(edges[-1], -math.inf))

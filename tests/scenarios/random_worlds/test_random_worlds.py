@@ -13,7 +13,7 @@ import yaml
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.export.make_dataset import of_worlds
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES
+from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES, Distribution
 from peopleboy.scenarios.random_worlds.drawn_values import drawn_values, histograms
 from peopleboy.scenarios.random_worlds.random_world import random_scenario, random_world
 from tests.helpers.calls.command_line import refusal, run_cli
@@ -112,7 +112,7 @@ def test_a_longer_world_is_asked_for_by_its_length() -> None:
 
 def test_histograms_count_every_value() -> None:
     drawn = [drawn_values(random_scenario(seed).resolved(seed)) for seed in range(3)]
-    rows = {what: counts for what, _, counts in histograms(drawn)}
+    rows = {what: counts for what, _, counts in histograms(drawn, Distribution())}
     assert sum(map(int, rows[RANGES["air"].what].split(" · "))) == 3
     assert sum(map(int, rows[RANGES["people"].what].split(" · "))) == 3
     sexes = [person for one in drawn for person in one["sex"]]

@@ -1,0 +1,59 @@
+"""The distribution of rendered random worlds can be narrowed by a file and by options."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.export.make_dataset import SetOptions
+from peopleboy.scenarios.random_worlds.distribution import SHARES, narrowed
+
+
+def test_options_override_the_file_and_the_rest_stays(tmp_path: Path) -> None:
+    file = tmp_path / "own.yaml"
+    file.write_text("place: {room: 1, street: 3}\npeople: [1, 3]\npitch: 2\n", encoding="utf-8")
+    options = SetOptions(random_worlds=True, distribution=file, pitch_deg=(5.0, 10.0), seeds=range(3))
+    found = options.contents().distribution
+    assert found is not None
+    assert found.shares["place"] == {"room": 0.25, "street": 0.75}
+    assert (found.ranges["people"].low, found.ranges["people"].high) == (1, 3)
+    assert (found.ranges["pitch"].low, found.ranges["pitch"].high) == (5.0, 10.0)
+    assert found.odds == narrowed({}).odds
+    asked = options.asked(options.contents())
+    assert asked == ("--random-worlds", "--distribution", str(file), "--pitch-deg", "5.0", "10.0")
+
+
+@pytest.mark.parametrize(("only", "kinds"), [("rooms", 1), ("corridors", 3), ("streets", 1)])
+def test_only_one_kind_of_place_keeps_its_proportions(only: str, kinds: int) -> None:
+    contents = SetOptions(random_worlds=True, only=only).contents()  # type: ignore[arg-type]
+    assert contents.distribution is not None
+    places = contents.distribution.shares["place"]
+    assert len(places) == kinds
+    assert sum(places.values()) == pytest.approx(1.0)
+    assert len({round(share / SHARES["place"][name], 9) for name, share in places.items()}) == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("peple: 3\n", "peple: unknown name; did you mean 'people'"),
+        ("place: {attic: 1}\n", "unknown value 'attic'"),
+        ("place: {room: -1}\n", "weights of 0 or more"),
+        ("place: {room: 0}\n", "a weight above 0"),
+        ("pitch: [0, 40]\n", "within -15 .. 15 deg"),
+    ],
+)
+def test_a_wrong_file_is_refused_in_one_line(tmp_path: Path, content: str, told: str) -> None:
+    file = tmp_path / "own.yaml"
+    file.write_text(content, encoding="utf-8")
+    with pytest.raises(BadInput, match=r"own\.yaml") as refused:
+        SetOptions(random_worlds=True, distribution=file).contents()
+    assert told in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_options_of_random_worlds_are_refused_for_scenarios() -> None:
+    with pytest.raises(BadInput, match="--only: applies to random worlds"):
+        SetOptions(scenarios=("crossing_2",), only="rooms").contents()
