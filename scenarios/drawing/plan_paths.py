@@ -15,7 +15,7 @@ from peopleboy.scenarios.files.robot import CommandSpec
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.scores.goal_metrics import REACHED_M
 from peopleboy.sim.cameras.kinds import flat_geometry
-from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.people.walking.walker import ALONE, Walker
 from peopleboy.sim.places.moving import ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Fixture, Place
@@ -55,6 +55,9 @@ def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, 
         labels.block(x, y, 0.05)
     name = f"{person.name} {person.height_m:.2f} m{_presence(person, way)}"
     labels.write(start[0], start[1], name, size=8, color=colour, weight="bold")
+    manner = _manner(person)
+    if manner:
+        labels.write(start[0], start[1], manner, size=6.5, color=colour, style="italic")
     _draw_pauses(axes, labels, person, way, colour)
     _draw_times(axes, labels, way, colour)
 
@@ -64,6 +67,27 @@ def _presence(person: PersonConfig, way: _Way) -> str:
     enters = f"from {person.enter_s:.1f}" if person.enter_s > 0.0 else ""
     leaves = f"until {person.leave_s:.1f}" if way.leaves and not way.walks else ""
     return f", {' '.join(filter(None, (enters, leaves)))} s" if enters or leaves else ""
+
+
+def _manner(person: PersonConfig) -> str:
+    """Describe whether a person gives way to others, and how the person treats the robot."""
+    parts = ["yields"] if person.yields else []
+    if person.reacts is not None:
+        near = "" if person.reacts.from_m is None else f" from {person.reacts.from_m:g} m"
+        parts.append(f"robot: {person.reacts.way.replace('_', ' ')}{near}")
+    if person.leads is not None:
+        parts.append("leads the robot")
+    return ", ".join(parts)
+
+
+def _waits(waypoint: Waypoint) -> str:
+    """Describe a wait for the robot; empty without one."""
+    if waypoint.until_robot_within_m is None:
+        return ""
+    return (
+        f"waits for the robot within {waypoint.until_robot_within_m:g} m,\n"
+        f"at most {waypoint.waits_at_most_s:g} s more"
+    )
 
 
 def _walk(person: PersonConfig, end_s: float) -> _Way:
@@ -96,8 +120,9 @@ def _draw_arrows(axes: Axes, way: _Way, colour: str) -> None:
 
 
 def _draw_pauses(axes: Axes, labels: Labels, person: PersonConfig, way: _Way, colour: str) -> None:
-    for waypoint in person.path[:-1]:
-        if waypoint.pause_s < _SHORTEST_PAUSE_S:
+    for waypoint in person.path:
+        waits = _waits(waypoint)
+        if not waits and (waypoint.pause_s < _SHORTEST_PAUSE_S or waypoint is person.path[-1]):
             continue
         gaps = np.linalg.norm(way.places - np.array(waypoint.at_m), axis=1)
         if gaps.min() > 0.1:
@@ -106,7 +131,8 @@ def _draw_pauses(axes: Axes, labels: Labels, person: PersonConfig, way: _Way, co
         labels.block(*waypoint.at_m, 0.16)
         what = "" if waypoint.posture == "standing" else f" {waypoint.posture.replace('_', ' ')}"
         facing = f", faces {waypoint.face}" if isinstance(waypoint.face, str) else ""
-        text = f"pauses {waypoint.pause_s:g} s{what}{facing}"
+        pause = f"pauses {waypoint.pause_s:g} s{what}{facing}" if waypoint.pause_s or not waits else ""
+        text = "\n".join(filter(None, (pause, waits)))
         labels.write(*waypoint.at_m, text, size=6.5, color=colour, style="italic")
 
 

@@ -3,7 +3,8 @@
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import get_args
 
 import numpy as np
@@ -59,10 +60,10 @@ class Ground:
     def faults(self, person: PersonSpec) -> Iterator[BadInput]:
         """Yield the faults of a person's path, with keys below the person's."""
         found = False
-        for fault in self._path_faults(person.path):
+        for fault in self._path_faults(person):
             found = True
             yield fault
-        moved = None if found else self.moved.fault(person, BODY_M)
+        moved = None if found else self.moved.fault(replace(person, path=self.routed(person)), BODY_M)
         if moved is not None:
             yield moved
 
@@ -75,14 +76,31 @@ class Ground:
         """Return the corners of the robot's shortest route between two places; None without a route."""
         return find_route(self.plan, self.robot_boxes, start, end)
 
-    def _path_faults(self, path: Sequence[Waypoint]) -> Iterator[BadInput]:
+    def routed(self, person: PersonSpec) -> tuple[Waypoint, ...]:
+        """Return a person's path, with `route: true` led around what is in the way."""
+        if not person.route:
+            return person.path
+        path = list(person.path[:1])
+        for start, end in pairwise(person.path):
+            corners = self._route(start, end) or ()
+            path += [
+                Waypoint(at_m=(round(x, 4), round(y, 4)), speed_m_s=end.speed_m_s) for x, y in corners[1:-1]
+            ]
+            path.append(end)
+        return tuple(path)
+
+    def _route(self, start: Waypoint, end: Waypoint) -> tuple[Point, ...] | None:
+        boxes = [box for box, _ in self._blocking(start, end)]
+        return find_route(self.plan, boxes, start.at_m, end.at_m)
+
+    def _path_faults(self, person: PersonSpec) -> Iterator[BadInput]:
         """Yield a fault for each waypoint that is not free, and each line between free ones that is not."""
-        is_free = False
+        is_free, path = False, person.path
         for index, waypoint in enumerate(path):
             fault = self._point_fault(waypoint)
             was_free, is_free = is_free, fault is None
             if fault is None and was_free:
-                fault = self._leg_fault(path[index - 1], waypoint)
+                fault = (self._route_fault if person.route else self._leg_fault)(path[index - 1], waypoint)
             if fault is not None:
                 yield BadInput(fault, key=("path", index, "at_m"))
 
@@ -101,9 +119,18 @@ class Ground:
                 (x0, y0), (x1, y1) = start.at_m, end.at_m
                 return (
                     f"the straight line from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) runs through "
-                    f"or within {BODY_M:g} m of {name!r}; add a waypoint that leads around it"
+                    f"or within {BODY_M:g} m of {name!r}; add a waypoint that leads around it, or route: true"
                 )
         return None
+
+    def _route_fault(self, start: Waypoint, end: Waypoint) -> str | None:
+        if self._route(start, end) is not None:
+            return None
+        (x0, y0), (x1, y1) = start.at_m, end.at_m
+        return (
+            f"no gap of {2.0 * BODY_M:g} m leads from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}); "
+            "move the waypoint, or what stands in between"
+        )
 
     def _blocking(self, *waypoints: Waypoint) -> Iterator[tuple[Rectangle, str]]:
         """Yield the boxes and names that block; a seat does not block a person who sits down or gets up."""

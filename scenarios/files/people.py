@@ -59,6 +59,13 @@ class _Variations(WalkConfig):
 class PersonSpec(ActorConfig, _Variations):
     """A walking person. Keys of the appearance that you omit are sampled from the seed."""
 
+    route: Annotated[
+        bool | None,
+        Field(
+            description="whether to lead the path around walls and objects where the straight line between "
+            "two waypoints is not free; by default, such a path is refused"
+        ),
+    ] = None
     height_m: Annotated[float | None, meaning_of(PersonConfig, "height_m")] = None
     sex: Annotated[Sex | None, meaning_of(PersonConfig, "sex")] = None
     build: Annotated[Build | None, meaning_of(PersonConfig, "build")] = None
@@ -113,6 +120,7 @@ def resolve_person(
     person: PersonSpec,
     seed: int,
     can_walk: Callable[[PersonSpec], bool],
+    routed: Callable[[PersonSpec], Path],
     usual_air_c: float | None = None,
 ) -> PersonSpec:
     """Sample everything about a person that the file leaves to the seed.
@@ -125,6 +133,7 @@ def resolve_person(
         seed: seed of the run.
         can_walk: whether a person's path is walkable; a path that the seed moves into a wall is sampled
             again, and after many tries the file's own path is kept.
+        routed: returns a person's path, led around obstacles if the file asks for that.
         usual_air_c: [degC] air temperature for which people dress normally; None samples from all clothes.
     """
     drawn = _draw_person(stream(seed, f"scenario.{person.name}.looks"), person)
@@ -139,7 +148,8 @@ def resolve_person(
         leave_s=None if person.leave_s is None else _rounded(person.leave_s + delay),
     )
     path = _vary_path(later, rng, can_walk)
-    return replace(later, **drawn, path=path, jitter_m=0.0, speed_jitter=0.0, enter_jitter_s=0.0)
+    path = routed(replace(later, path=path))
+    return replace(later, **drawn, path=path, route=None, jitter_m=0.0, speed_jitter=0.0, enter_jitter_s=0.0)
 
 
 def make_config(person: PersonSpec) -> PersonConfig:

@@ -142,7 +142,9 @@ class Scenario:
             people = assign_distinct_colours(people, stream(seed, "scenario.colours"))
         air_c = air_of(self.place) if self.spec.detail == "full" else None
         return tuple(
-            resolve_person(person, seed, lambda one: self.ground.fault(one) is None, air_c)
+            resolve_person(
+                person, seed, lambda one: self.ground.fault(one) is None, self.ground.routed, air_c
+            )
             for person in people
         )
 

@@ -15,7 +15,7 @@ from peopleboy.scenarios.drawing.draw_plan import draw_plan
 from peopleboy.scenarios.drawing.plan_paths import draw_person
 from peopleboy.scenarios.drawing.plan_sheet import MARGIN_M, Labels, lay_out, sections
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.people.person_config import PersonConfig, Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Reaction, Waypoint
 
 
 @given(st.floats(2.0, 100.0), st.floats(2.0, 20.0))
@@ -83,3 +83,20 @@ def test_who_leaves_is_said_to_whether_walking_standing_or_there(monkeypatch: py
         "stays from 5 s",
         f"{tall}, from 2.0 s",
     ]
+
+
+def test_the_plan_says_who_yields_reacts_and_waits_for_the_robot() -> None:
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    (axes,) = lay_out(figure, sections((0.0, 0.0, 10.0, 8.0)), 11.0, head_in=0.8, foot_in=1.0)
+    path = (
+        Waypoint(at_m=(2.0, 2.0)),
+        Waypoint(at_m=(6.0, 2.0), until_robot_within_m=1.5, waits_at_most_s=9.0),
+    )
+    reacts = Reaction(way="makes_way", from_m=3.0)
+    draw_person(
+        axes, Labels(axes), PersonConfig(name="eve", path=path, yields=True, reacts=reacts), 20.0, "b"
+    )
+    written = [text.get_text() for text in axes.texts]
+    assert "yields, robot: makes way from 3 m" in written
+    assert "waits for the robot within 1.5 m,\nat most 9 s more" in written

@@ -72,6 +72,13 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d.update(robot={"at_m": [1.0, 0.0], "behaviour": "scripted"}),
         ("robot.commands: a scripted robot needs at least one", "or use behaviour 'stand'"),
     ),
+    "a route through a wall": (
+        lambda d: d.update(
+            things=[{"kind": "block", "at_m": [4.0, 0.0], "size_m": [0.3, 5.8, 2.0]}],
+            people=[{"name": "eve", "route": True, "path": [{"at_m": [2.0, 1.0]}, {"at_m": [6.0, 1.0]}]}],
+        ),
+        ("people[0].path[1].at_m: no gap of 0.4 m leads from (2, 1) to (6, 1)",),
+    ),
     "a drive to no goal": (
         lambda d: d["robot"].update(behaviour="go_to"),
         ("robot.goal_m: behaviour 'go_to' needs one, such as [6.0, 1.5]",),
