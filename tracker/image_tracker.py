@@ -5,9 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import Radiometry
+from peopleboy.tracker.footage.lens import Lens
 from peopleboy.tracker.footage.thermal_images import ThermalImages
 from peopleboy.tracker.frame import COLOUR, THERMAL
 from peopleboy.tracker.track import Track
@@ -22,6 +24,9 @@ class ImageTracker:
         radiometry: meaning of pixel values; None if it is unknown.
         boxes: what boxes enclose; None for whole people, or for whatever your own tracker returns.
         seed: of the tracker's random numbers.
+        mask: (H, W) bool, where people are searched for; None for everywhere.
+        lens: distortion to correct, from `read_lens`; boxes are in the corrected images. None for none.
+        calibration: of the camera, for positions on the floor; None if it is unknown.
 
     Raises:
         BadInput: the tracker is unknown, or the meaning of pixel values is invalid.
@@ -34,10 +39,19 @@ class ImageTracker:
         radiometry: Radiometry | None = None,
         boxes: BoxKind | None = None,
         seed: int = 0,
+        mask: NDArray[np.bool_] | None = None,
+        lens: Lens | None = None,
+        calibration: Calibration | None = None,
     ) -> None:
         if boxes is None and not is_own(tracker):
             boxes = BoxKind.WHOLE
-        self._images = ThermalImages(radiometry, by_contrast=uses_contrast(tracker))
+        self._images = ThermalImages(
+            radiometry,
+            by_contrast=uses_contrast(tracker),
+            mask=mask,
+            lens=lens,
+            calibrate=None if calibration is None else lambda width, height: calibration,  # noqa: ARG005
+        )
         self._tracker = CheckedTracker(
             make_tracker(tracker, seed), f"tracker {tracker!r}", (THERMAL, COLOUR), boxes
         )

@@ -26,7 +26,7 @@ from peopleboy.tracker.trackers import DEFAULT_TRACKER, LIVE_TRACKER
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.finished_runs.import_tracks import TrackImport
-    from peopleboy.scenarios.footage.options import RawOptions, RgbdCamera, RgbdOptions, TrackOptions
+    from peopleboy.scenarios.footage.options import FootageCamera, RawOptions, RgbdOptions, TrackOptions
     from peopleboy.scenarios.footage.track_footage import ShowTracks, Tracked
     from peopleboy.tracker.footage.grey import Radiometry
     from peopleboy.tracker.footage.live_footage import LiveSource
@@ -49,7 +49,7 @@ class _Footage(PlainPath):
 
 @click.command(cls=FieldsCommand)
 @click.argument("footage", metavar="FOLDER|TIFF|VIDEO|CAMERA|STREAM|-", type=_Footage())
-@options_of("scenarios.footage.options:TrackOptions", "out", "colour", into="files")
+@options_of("scenarios.footage.options:TrackOptions", "out", "colour", "calibration", "mask", into="files")
 @options_of("scenarios.footage.options:RawOptions", "size", "pixels", into="raw")
 @click.option(
     "--live",
@@ -66,7 +66,7 @@ class _Footage(PlainPath):
     "scenarios.footage.options:RgbdOptions", "depth", "m_per_count", "odometry", into="rgbd", is_optional=True
 )
 @options_of(
-    "scenarios.footage.options:RgbdCamera",
+    "scenarios.footage.options:FootageCamera",
     "height_m",
     "pitch_deg",
     "focal_px",
@@ -95,7 +95,7 @@ def track(
     thermal: "GivenOptions[Radiometry]",
     scale: str | None,
     rgbd: "GivenOptions[RgbdOptions]",
-    camera: "GivenOptions[RgbdCamera]",
+    camera: "GivenOptions[FootageCamera]",
     given: "GivenOptions[TrackOptions]",
     detector: str | None,
     start: str | None,
@@ -120,12 +120,14 @@ def track(
 
     source = _source(footage, raw)
     usual = DEFAULT_TRACKER if isinstance(source, Path) else LIVE_TRACKER
+    is_depth = rgbd.depth is not None
     tracker = given.tracker or (usual if rgbd.depth is None else RGBD_TRACKER)
     options = given.make(
         footage=source,
         **{**files.values, "out": files.out or _default_out(source)},
         radiometry=thermal.make(scale=None if scale is None else parse_scale(scale)),
         rgbd=_rgbd(rgbd, camera),
+        mount=None if is_depth else _mount(camera),
         tracker=with_detector(tracker, detector),
         start=None if start is None else parse_start(start),
     )
@@ -173,10 +175,20 @@ def _track(options: "TrackOptions", output: Output, *, is_shown: bool) -> None:
     _print(tracked, options, output)
 
 
-def _rgbd(given: "GivenOptions[RgbdOptions]", camera: "GivenOptions[RgbdCamera]") -> "RgbdOptions | None":
+def _mount(camera: "GivenOptions[FootageCamera]") -> "FootageCamera | None":
+    if not camera.values:
+        return None
+    if camera.height_m is None:
+        raise BadInput(
+            "positions on the floor need --camera-height-m; add it, or leave the camera's options out"
+        )
+    return camera.make()
+
+
+def _rgbd(given: "GivenOptions[RgbdOptions]", camera: "GivenOptions[FootageCamera]") -> "RgbdOptions | None":
     if given.depth is None:
-        if given.values or camera.values:
-            raise BadInput("options of a depth camera need --depth FOLDER; add it, or leave them out")
+        if given.values:
+            raise BadInput("options of depth images need --depth FOLDER; add it, or leave them out")
         return None
     if given.m_per_count is None:
         raise BadInput("--depth needs --depth-scale, the metres per count: 0.001 for millimetres")

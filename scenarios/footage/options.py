@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.settings import Metavar
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.boxes import Box, corners
@@ -29,7 +30,7 @@ LEVEL_DEG: Final = 10.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RgbdCamera:
+class FootageCamera:
     """A camera without distortion, whose principal point is the image centre.
 
     Raises:
@@ -37,16 +38,14 @@ class RgbdCamera:
     """
 
     height_m: Annotated[
-        float, Field(alias="camera_height_m", description="Height of the depth camera above the floor.")
+        float, Field(alias="camera_height_m", description="Height of the camera above the floor.")
     ] = 1.2
-    pitch_deg: Annotated[
-        float, Field(description="Pitch of the depth camera; positive values point down.")
-    ] = 0.0
+    pitch_deg: Annotated[float, Field(description="Pitch of the camera; positive values point down.")] = 0.0
     focal_px: Annotated[
-        float | None, Field(description="Focal length of the depth camera, instead of --vertical-fov-deg.")
+        float | None, Field(description="Focal length of the camera, instead of --vertical-fov-deg.")
     ] = None
     vertical_fov_deg: Annotated[
-        float | None, Field(description="Vertical field of view of the depth camera.  [default: 43]")
+        float | None, Field(description="Vertical field of view of the camera.  [default: 43 for depth]")
     ] = None
 
     def __post_init__(self) -> None:
@@ -76,6 +75,11 @@ class RgbdCamera:
             position_m=(0.0, 0.0, self.height_m),
             pitch_rad=math.radians(self.pitch_deg),
         )
+
+    def calibration(self, width: int, height: int) -> PinholeCalibration:
+        """Return the calibration for an image size [px]."""
+        geometry = self.geometry(width, height)
+        return PinholeCalibration(geometry.intrinsics, geometry.robot_from_camera)
 
     def _angle_rad(self, height: int) -> float:
         if self.focal_px is not None:
@@ -109,7 +113,7 @@ class RgbdOptions:
         ),
         Metavar("M"),
     ]
-    camera: RgbdCamera = field(default_factory=RgbdCamera)
+    camera: FootageCamera = field(default_factory=FootageCamera)
     odometry: Annotated[
         Path | None,
         Field(
@@ -153,6 +157,7 @@ class TrackOptions:
         footage: folder of images, a video or a live source, thermal; with `rgbd`, a folder of colour images.
         radiometry: meaning of thermal pixel values.
         rgbd: depth images of the same view; None for thermal footage.
+        mount: pose and field of view of the thermal camera, for positions on the floor; None if unknown.
         start: initial box of a person in the first image, or "truth" for the ground truth's; None to detect
             people.
     """
@@ -168,6 +173,20 @@ class TrackOptions:
     ] = None
     radiometry: Radiometry = field(default_factory=Radiometry)
     rgbd: RgbdOptions | None = None
+    mount: FootageCamera | None = None
+    calibration: Annotated[
+        Path | None,
+        Field(
+            description="YAML file of OpenCV or ROS with the camera's intrinsics and distortion, which is "
+            "corrected; boxes are in the corrected images."
+        ),
+    ] = None
+    mask: Annotated[
+        Path | None,
+        Field(
+            description="Picture of the size of the images; people are searched for where it is not black."
+        ),
+    ] = None
     rate_hz: Annotated[
         float | None,
         Field(
@@ -250,7 +269,7 @@ class TrackOptions:
         depth = () if self.rgbd is None else (self.rgbd.depth, self.rgbd.odometry)
         detector = split_name(self.tracker)[1]
         detections = Path(detector) if detector is not None and is_detection_file(detector) else None
-        paths = (self.path, self.colour, self.truth, *depth, detections)
+        paths = (self.path, self.colour, self.truth, self.calibration, self.mask, *depth, detections)
         return tuple(path for path in paths if path is not None)
 
 

@@ -1,7 +1,7 @@
 """Read footage of any kind as frames: thermal with optional colour, or colour with depth."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from itertools import chain, islice, zip_longest
 from pathlib import Path
 from typing import Any, Final, Protocol
@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.scenarios.drawing.overlay import Picture, show_thermal
 from peopleboy.scenarios.footage.detect_polarity import LOOK_AHEAD, detect_polarity
 from peopleboy.scenarios.footage.options import (
     DEFAULT_RATE_HZ,
+    FootageCamera,
     RgbdOptions,
     TrackOptions,
     check_start,
@@ -23,11 +23,12 @@ from peopleboy.scenarios.footage.options import (
 from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
 from peopleboy.tracker.footage.grey import Polarity, Radiometry, one_channel
 from peopleboy.tracker.footage.image_sequences import Footage, PictureFolder, folders_in, open_footage
+from peopleboy.tracker.footage.lens import Lens, read_lens
 from peopleboy.tracker.footage.live_footage import LiveFootage, LiveSource
 from peopleboy.tracker.footage.picture_names import offsets_of, pictures_in
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
 from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, rate_in
-from peopleboy.tracker.footage.thermal_images import ThermalImages, check_image
+from peopleboy.tracker.footage.thermal_images import ThermalImages, check_image, read_mask
 from peopleboy.tracker.footage.time_stamps import read_time_stamps, time_stamps
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.trackers import uses_contrast
@@ -79,7 +80,7 @@ class RgbdViews:
         Raises:
             BadInput: an image is unusable, or depth and colour differ in size.
         """
-        calibration = PinholeCalibration(self._geometry.intrinsics, self._geometry.robot_from_camera)
+        calibration = self._rgbd.camera.calibration(self._geometry.width, self._geometry.height)
         colours, depths = (read_row(paths, self.notes) for paths in (self._pairs.colour, self._pairs.depth))
         for number, (colour, counts) in enumerate(zip(colours, depths, strict=True)):
             if colour.shape[:2] != counts.shape[:2]:
@@ -159,7 +160,28 @@ def _numbers(count: int) -> list[str]:
     return [str(number) for number in range(1, count + 1)]
 
 
+def _mount_of(options: TrackOptions, lens: Lens | None) -> FootageCamera | None:
+    """Return pose and field of view of the thermal camera, which a calibration file can complete."""
+    mount = options.mount
+    if mount is None:
+        return None
+    is_known = mount.focal_px is not None or mount.vertical_fov_deg is not None
+    if lens is not None and is_known:
+        raise BadInput("--calibration has the focal length; leave --focal-px and --vertical-fov-deg out")
+    if lens is not None:
+        return replace(mount, focal_px=lens.focal_px)
+    if not is_known:
+        raise BadInput(
+            "positions on the floor need --vertical-fov-deg, --focal-px or --calibration beside "
+            "--camera-height-m; add one of them"
+        )
+    return mount
+
+
 def _check_kind(options: TrackOptions) -> None:
+    for option, path in (("--calibration", options.calibration), ("--mask", options.mask)):
+        if path is not None:
+            raise BadInput(f"{option}: is for thermal images; leave it out, or leave --depth out")
     if options.colour is not None or options.radiometry != Radiometry():
         raise BadInput(
             "--depth: --colour, --temperature-range, --scale and --polarity are for thermal images only; "
@@ -208,6 +230,9 @@ class ThermalViews:
             raise BadInput("--tracker colour: needs --colour FOLDER; add it, or give --tracker thermal")
         self._options = options
         self._images: ThermalImages | None = None
+        self._mask = None if options.mask is None else read_mask(options.mask)
+        self._lens = None if options.calibration is None else read_lens(options.calibration)
+        self._mount = _mount_of(options, self._lens)
         self._footage: Footage
         self.stop: Callable[[], None] | None = None
         if isinstance(options.footage, LiveSource):
@@ -265,6 +290,8 @@ class ThermalViews:
         """Notes on the interpretation of the inputs."""
         colour = [] if self._colour is None else self._colour.notes
         images = [] if self._images is None else self._images.notes
+        if self._mount is not None:
+            images = [*images, *self._mount.notes]
         return [*self._footage.notes, *images, *colour]
 
     def __iter__(self) -> Iterator[Frame]:
@@ -279,6 +306,9 @@ class ThermalViews:
             self._radiometry([thermal for thermal, _ in first]),
             by_contrast=uses_contrast(self._options.tracker),
             where=str(self._options.footage),
+            mask=self._mask,
+            lens=self._lens,
+            calibrate=None if self._mount is None else self._mount.calibration,
         )
         for number, (thermal, picture) in enumerate(chain(first, pictures)):
             if number == 0:
@@ -326,10 +356,15 @@ class ThermalViews:
     def about(self) -> dict[str, Any]:
         """Describe the meaning of the pixel values."""
         colour, radiometry = self._options.colour, self._options.radiometry
+        mount, given = self._mount, (self._options.calibration, self._options.mask)
+        calibration, mask = (None if path is None else path.name for path in given)
         return {
             "colour": None if colour is None else colour.name,
             "temperature_range_c": radiometry.span_c,
             "scale": radiometry.scale,
+            "camera": None if mount is None else asdict(mount),
+            "calibration": calibration,
+            "mask": mask,
         }
 
 

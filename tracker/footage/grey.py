@@ -68,6 +68,14 @@ def local_grey(values: Values) -> "Grey":
     return _whole_grey(np.asarray(_MIDDLE + GREYS * away / deviation, np.float32))
 
 
+def fill_outside(values: Values, mask: NDArray[np.bool_]) -> Values:
+    """Replace values (H, W) outside a mask (H, W) by the mean of those inside, in the neighbourhood."""
+    inside = mask.astype(np.float32)
+    offset = np.float32(np.mean(values[mask]))
+    mean = _around((values - offset) * inside) / np.maximum(_around(inside), np.float32(1e-3)) + offset
+    return np.where(mask, values, mean)
+
+
 def noise_of(values: Values) -> float:
     """Return the standard deviation of the noise of a picture (H, W), from second differences along rows."""
     bend = values[:, 2:] + values[:, :-2] - 2.0 * values[:, 1:-1]

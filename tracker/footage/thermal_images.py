@@ -1,19 +1,24 @@
 """Conversion of the images of one thermal camera to frames of a tracker."""
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.tracker.footage.grey import (
     LEAST_SIDE_PX,
     Radiometry,
     are_bytes_swapped,
     check_plausible,
+    fill_outside,
     grey_maker,
 )
-from peopleboy.tracker.footage.read_picture import size_of
+from peopleboy.tracker.footage.lens import Lens
+from peopleboy.tracker.footage.read_picture import read_picture, size_of
 from peopleboy.tracker.footage.read_tiff import Raw
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 
@@ -27,15 +32,27 @@ class ThermalImages:
         radiometry: known properties of the pixels.
         by_contrast: whether the tracker uses contrast only; see `grey_maker`.
         where: name of the images in messages.
+        mask: (H, W) where people are searched for; None for everywhere.
+        lens: distortion that is corrected; None for none.
+        calibrate: returns the calibration for a width and height [px]; None if it is unknown.
 
     Attributes:
         notes: notes on the interpretation of the images.
     """
 
     def __init__(
-        self, radiometry: Radiometry | None = None, *, by_contrast: bool = True, where: str = "image"
+        self,
+        radiometry: Radiometry | None = None,
+        *,
+        by_contrast: bool = True,
+        where: str = "image",
+        mask: NDArray[np.bool_] | None = None,
+        lens: Lens | None = None,
+        calibrate: Callable[[int, int], Calibration] | None = None,
     ) -> None:
         self._radiometry = Radiometry() if radiometry is None else radiometry
+        self._mask, self._lens, self._calibrate = mask, lens, calibrate
+        self._calibrations: dict[str, Calibration] = {}
         self._by_contrast = by_contrast
         self._where = where
         self._first: Raw | None = None
@@ -56,7 +73,13 @@ class ThermalImages:
         is_first = self._first is None
         self._check(image, time_s)
         values = self._radiometry.values(image, self.notes)
+        if self._mask is not None:
+            values = fill_outside(values, self._mask)
+        if self._lens is not None:
+            values = self._lens.undistort(values)
         if is_first:
+            if self._calibrate is not None:
+                self._calibrations = {THERMAL: self._calibrate(image.shape[1], image.shape[0])}
             self._note_counts(image)
             check_plausible(self._radiometry, values)
             self._to_grey = grey_maker(
@@ -65,7 +88,7 @@ class ThermalImages:
         images: dict[str, NDArray[np.uint8]] = {THERMAL: self._to_grey(values)}
         if colour is not None:
             images[COLOUR] = colour
-        return Frame(images=images, time_s=time_s)
+        return Frame(images=images, time_s=time_s, calibrations=self._calibrations)
 
     def _check(self, image: NDArray[Any], time_s: float) -> None:
         check_image(image, self._where)
@@ -77,6 +100,10 @@ class ThermalImages:
             )
         if image.dtype != first.dtype:
             raise BadInput(f"{self._where}: must be {first.dtype} as the first, got {image.dtype}")
+        if self._mask is not None and self._mask.shape != image.shape[:2]:
+            raise BadInput(
+                f"--mask: must have the size of the images, {size_of(image)}, got {size_of(self._mask)}"
+            )
         if not time_s > self._time_s:
             raise BadInput(f"time_s must be later than that of the last image, {self._time_s}, got {time_s}")
         self._first, self._time_s = first, time_s
@@ -92,6 +119,19 @@ class ThermalImages:
                 f"{image.dtype} images without --scale: temperatures are unknown, "
                 "grey levels are stretched to the contrast of the scene"
             )
+
+
+def read_mask(path: Path) -> NDArray[np.bool_]:
+    """Read a mask (H, W) from a picture: people are searched for where it is not black.
+
+    Raises:
+        BadInput: it cannot be read, or is all black.
+    """
+    picture = read_picture(path, [])
+    mask = picture.any(axis=2) if picture.ndim == 3 else picture > 0
+    if not mask.any():
+        raise BadInput(f"{path}: is all black; people are searched for where a mask is not black")
+    return np.asarray(mask)
 
 
 def check_image(image: object, where: str) -> None:

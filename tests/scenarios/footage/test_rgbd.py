@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 
-from peopleboy.scenarios.footage.options import RgbdCamera, RgbdOptions, TrackOptions
+from peopleboy.scenarios.footage.options import FootageCamera, RgbdOptions, TrackOptions
 from peopleboy.scenarios.footage.views import open_views
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame, Odometry
 from tests.helpers.calls.footage_calls import call, refusal
@@ -141,7 +141,7 @@ def test_the_tracker_sees_millimetres_and_colours_of_the_same_pixels(tmp_path: P
 
 
 def test_the_camera_looks_where_it_is_said_to(tmp_path: Path) -> None:
-    camera = RgbdCamera(height_m=1.5, pitch_deg=10.0, vertical_fov_deg=60.0)
+    camera = FootageCamera(height_m=1.5, pitch_deg=10.0, vertical_fov_deg=60.0)
     seen = frames(*write_rgbd(tmp_path, 1), camera=camera)[0].calibrations[DEPTH]
     assert seen.position_m == (0.0, 0.0, 1.5)
     away = 1.5 / math.tan(math.radians(10.0))
@@ -214,7 +214,7 @@ def test_depth_and_its_options_ask_for_each_other(tmp_path: Path) -> None:
     colour, depth = write_rgbd(tmp_path)
     out = ("--out", tmp_path / "out")
     assert_names(refusal(colour, *out, "--depth", depth), "--depth-scale", "0.001")
-    for option in ("--depth-scale", "--camera-height-m", "--focal-px", "--pitch-deg", "--odometry"):
+    for option in ("--depth-scale", "--odometry"):
         assert_names(refusal(colour, *out, option, 1), "--depth FOLDER")
     assert_names(refusal(colour, *out, "--tracker", "rgbd"), "rgbd", "--depth")
     assert not (tmp_path / "out").exists()
