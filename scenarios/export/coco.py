@@ -16,7 +16,7 @@ in a run's folder. Fields beyond COCO's own are explained in docs/truth.md.
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
@@ -25,6 +25,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.geometry.camera_calibration import PanoramaCalibration
+from peopleboy.scenarios.export.labelled_frames import (
+    LabelledFrame,
+    attributes_of,
+    is_row_in_image,
+    labelled_frames,
+)
 from peopleboy.scenarios.export.replay import (
     CORNER_PX,
     OUTSIDE,
@@ -33,19 +39,18 @@ from peopleboy.scenarios.export.replay import (
     keypoints_from_corner,
 )
 from peopleboy.scenarios.export.splits import by_split
-from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.atomic_output import write_aside
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import (
     image_file,
     make_image_folders,
     thermal_span_c,
-    write_images,
 )
+from peopleboy.scenarios.run_folder.run_tables import Row
 from peopleboy.sim.cameras.camera_config import ThermalConfig
-from peopleboy.sim.cameras.kinds import image_folders, with_boxes
+from peopleboy.sim.cameras.kinds import with_boxes
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
-from peopleboy.sim.truth.truth import PersonTruth
 
 _PERSON = 1
 _LICENCE: Final = {"id": 1, "name": "MIT", "url": "https://opensource.org/license/mit"}  # the project's
@@ -80,10 +85,12 @@ def _write_set(runs: Sequence[FinishedRun], folder: Path, play: Play) -> dict[st
     cameras = {name: _Annotations() for run in runs for name in with_boxes(run.robot.cameras)}
     for video, run in enumerate(runs, start=1):
         make_image_folders(folder / run.name, run.robot.cameras)
-        for tick in play(run):
-            write_images(folder / run.name, tick.frame, tick.observation, run.robot.cameras)
-            for name in (name for name in cameras if name in tick.truths):
-                cameras[name].add(video, run, name, tick)
+        attributes = attributes_of(run)
+        for shot in labelled_frames(run, play):
+            for place, content in shot.images.items():
+                write_aside(folder / run.name / place / image_file(shot.frame), content)
+            for name in shot.people:
+                cameras[name].add(video, run, name, shot, attributes)
     return {name: _content(runs, name, own) for name, own in cameras.items()}
 
 
@@ -94,15 +101,16 @@ class _Annotations:
         self.images: list[dict[str, Any]] = []
         self.annotations: list[dict[str, Any]] = []
 
-    def add(self, video: int, run: FinishedRun, camera: str, tick: Tick) -> None:
-        truth = tick.truths[camera]
+    def add(
+        self, video: int, run: FinishedRun, camera: str, shot: LabelledFrame, attributes: Mapping[str, Any]
+    ) -> None:
         number = len(self.images) + 1
         about = {"id": number, "video_id": video, "license": _LICENCE["id"]}
-        self.images.append(about | _image(run, camera, tick))
-        for person in truth.people:
-            if person.visible_px > 0:
+        self.images.append(about | _image(run, camera, shot, attributes))
+        for person in shot.people[camera]:
+            if person["visible_px"] > 0:
                 own = {"id": len(self.annotations) + 1, "image_id": number}
-                self.annotations.append(own | annotation(person, truth.instance))
+                self.annotations.append(own | annotation(person, shot.masks[camera], attributes))
 
 
 def _content(runs: Sequence[FinishedRun], camera: str, own: _Annotations) -> dict[str, Any]:
@@ -117,29 +125,35 @@ def _content(runs: Sequence[FinishedRun], camera: str, own: _Annotations) -> dic
     }
 
 
-def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, Any]:
+def annotation(person: Row, instance: NDArray[np.uint8], attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Return the annotation of a person with at least one visible pixel.
 
     Args:
-        person: ground truth of the person.
+        person: row of the ground truth.
         instance: (H, W) id of the person seen at each pixel.
+        attributes: constant attributes of each person, by name.
     """
-    mask = instance == person.id
+    mask = instance == person["id"]
     height, width = mask.shape
-    seen = person.joint_is_visible.tolist()
-    keypoints = keypoints_from_corner(person.joints_px.tolist(), seen, (width, height))
+    joints = np.reshape(person["joints_px"], (-1, 2)).tolist()
+    keypoints = keypoints_from_corner(joints, person["joint_is_visible"], (width, height))
     return {
         "category_id": _PERSON,
         "iscrowd": 0,
-        "bbox": from_corner(person.visible_box),
-        "area": person.visible_px,
+        "bbox": _box(person, "visible_"),
+        "area": person["visible_px"],
         "segmentation": _encoded(mask),
         "keypoints": [number for point in keypoints for number in point],
         "num_keypoints": sum(flag != OUTSIDE for _, _, flag in keypoints),
-        "whole_bbox": from_corner(person.whole_box),
-        "body_bbox": from_corner(person.box),
-        **_truth(person),
+        "whole_bbox": _box(person, "whole_"),
+        "body_bbox": _box(person, ""),
+        **_truth(person, attributes),
     }
+
+
+def _box(person: Row, prefix: str) -> list[float] | None:
+    left, top, width, height = (person[f"{prefix}{edge}_px"] for edge in ("left", "top", "width", "height"))
+    return None if left is None else from_corner((left, top, width, height))
 
 
 def _encoded(mask: NDArray[np.bool_]) -> dict[str, Any]:
@@ -164,50 +178,44 @@ def _encoded(mask: NDArray[np.bool_]) -> dict[str, Any]:
     return {"size": list(mask.shape), "counts": text}
 
 
-def _truth(person: PersonTruth) -> dict[str, Any]:
+def _truth(person: Row, attributes: Mapping[str, Any]) -> dict[str, Any]:
+    same = ("heading_rad", "distance_m", "posture", "is_counted", "visible_fraction", "occluded_fraction")
     return {
-        "track_id": person.id,
-        "name": person.name,
-        "position_m": list(person.position_m),
-        "heading_rad": person.heading_rad,
-        "distance_m": person.distance_m,
-        "posture": person.posture,
-        "is_counted": person.is_counted,
-        "visible_fraction": person.visible_fraction,
-        "occluded_fraction": person.occluded_fraction,
-        "occluder": person.occluder,
-        "hidden_by": dict(person.hidden_by),
-        "joints_m": np.round(person.joints_m, 4).tolist(),
+        "track_id": person["id"],
+        "name": person["name"],
+        "position_m": [person["x_m"], person["y_m"]],
+        **{key: person[key] for key in same},
+        "attributes": attributes[person["name"]],
+        "occluder": person["occluder"],
+        "hidden_by": dict(person["hidden_by"]),
+        "joints_m": np.round(np.reshape(person["joints_m"], (-1, 3)), 4).tolist(),
     }
 
 
-def _image(run: FinishedRun, camera: str, tick: Tick) -> dict[str, Any]:
-    truth = tick.truths[camera]
-    hidden = [p for p in truth.people if p.visible_px == 0 and p.is_in_image]
+def _image(
+    run: FinishedRun, camera: str, shot: LabelledFrame, attributes: Mapping[str, Any]
+) -> dict[str, Any]:
+    geometry, robot = run.robot.cameras[camera].camera, shot.robot
+    hidden = [p for p in shot.people[camera] if p["visible_px"] == 0 and is_row_in_image(p)]
     return {
-        "file_name": _file_name(run, camera, tick),
-        **_files_beside(run, camera, tick),
-        "width": truth.camera.width,
-        "height": truth.camera.height,
-        "frame_id": tick.frame,
-        "time_s": truth.time_s,
-        "robot": {"x_m": truth.robot.x, "y_m": truth.robot.y, "heading_rad": truth.robot.heading},
-        "world_from_camera": truth.world_from_camera.tolist(),
-        "hidden_people": [{"whole_bbox": from_corner(p.whole_box), **_truth(p)} for p in hidden],
+        "file_name": _file_name(run, camera, shot.frame),
+        **{
+            f"{place}_file_name": _file_name(run, place, shot.frame)
+            for place in shot.images
+            if place != camera
+        },
+        "width": geometry.width,
+        "height": geometry.height,
+        "frame_id": shot.frame,
+        "time_s": robot["time_s"],
+        "robot": {key: robot[key] for key in ("x_m", "y_m", "heading_rad")},
+        "world_from_camera": shot.world_from(geometry.robot_from_camera).tolist(),
+        "hidden_people": [{"whole_bbox": _box(p, "whole_"), **_truth(p, attributes)} for p in hidden],
     }
 
 
-def _files_beside(run: FinishedRun, camera: str, tick: Tick) -> dict[str, str]:
-    """Return the names of the other files of the same instant, by folder."""
-    return {
-        f"{folder}_file_name": _file_name(run, folder, tick)
-        for folder, image, _ in image_folders(run.robot.cameras)
-        if folder != camera and image in tick.observation.images
-    }
-
-
-def _file_name(run: FinishedRun, folder: str, tick: Tick) -> str:
-    return f"{run.name}/{folder}/{image_file(tick.frame)}"
+def _file_name(run: FinishedRun, folder: str, frame: int) -> str:
+    return f"{run.name}/{folder}/{image_file(frame)}"
 
 
 def _video(number: int, run: FinishedRun, camera: str) -> dict[str, Any]:

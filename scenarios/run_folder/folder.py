@@ -27,6 +27,7 @@ from peopleboy.scenarios.run_folder.image_files import (
     BackgroundQueue,
     images_to_write,
     make_image_folders,
+    mask_file,
     millimetres,
     write_png,
 )
@@ -126,6 +127,8 @@ class RunFolder:
         (path / "truth").mkdir()
         if frames:
             make_image_folders(path, cameras)
+            for name in with_boxes(cameras):
+                mask_file(path, name, 1).parent.mkdir(parents=True)
         self._truths = {
             name: open_text(truth_files(path, name)[0]) for name in (THERMAL, *further_cameras(cameras))
         }
@@ -168,7 +171,12 @@ class RunFolder:
         else:
             self._backgrounds.update(tick)
             images = images_to_write(self.path, tick.frame, tick.observation, self._cameras)
-            self._images.add(partial(self._commit, rows, list(images)))
+            masks = [
+                (mask_file(self.path, name, tick.frame), tick.truths[name].instance)
+                for name in self._truths
+                if name in tick.truths
+            ]
+            self._images.add(partial(self._commit, rows, [*images, *masks]))
 
     def skip(self, tick: Tick | BlindTick) -> None:
         """Write only the robot's row of a tick, whose images and ground truth are not wanted."""
@@ -256,7 +264,7 @@ def settle_run(folder: Path, about: Mapping[str, Any]) -> dict[str, Any]:
     try:
         frames = recover_tables(folder, cameras)
         _trim_texts(folder, frames)
-        for image in folder.glob("*/*.png"):
+        for image in folder.glob("**/*.png"):
             if image.stem.isdecimal() and int(image.stem) > frames:
                 image.unlink()
         for part in folder.glob(f"**/*{PART}"):

@@ -43,6 +43,11 @@ def images_to_write(
             yield folder / name / image_file(frame), layer.encode(senses.images[image])
 
 
+def mask_file(folder: Path, camera: str, frame: int) -> Path:
+    """Return the file of a frame with the id of the person at each pixel, in the folder of a run."""
+    return folder / "truth" / camera / "instance" / image_file(frame)
+
+
 def image_file(frame: int) -> str:
     """Return the file name of a frame, counted from 1."""
     return f"{frame:06d}.png"
@@ -54,12 +59,17 @@ def write_png(path: Path, image: Stored) -> None:
     Raises:
         BadInput: the image cannot be written.
     """
-    stored = image[..., ::-1] if image.ndim == 3 else image
-    _, encoded = cv2.imencode(".png", stored, [cv2.IMWRITE_PNG_COMPRESSION, 2])
     try:
-        write_aside(path, encoded.tobytes())
+        write_aside(path, png_bytes(image))
     except OSError as error:
         raise BadInput(f"{path}: cannot write this image: {error.strerror or error}") from error
+
+
+def png_bytes(image: Stored) -> bytes:
+    """Return the contents of a PNG file with an image, as in `write_png`."""
+    stored = image[..., ::-1] if image.ndim == 3 else image
+    _, encoded = cv2.imencode(".png", stored, [cv2.IMWRITE_PNG_COMPRESSION, 2])
+    return encoded.tobytes()
 
 
 def millimetres(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:

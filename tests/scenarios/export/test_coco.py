@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from peopleboy.scenarios.export.coco import annotations_file
 from peopleboy.scenarios.export.replay import replay
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.sim.geometry.pinhole import transform
+from tests.helpers.calls.command_line import run_cli
 
 # What pycocotools decodes into is older than numpy 2.
 pytestmark = pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")
@@ -163,3 +165,29 @@ def test_the_images_are_those_of_the_run(coco: COCO, coco_folder: Path, crossing
         assert (
             size == cv2.imread(str(coco_folder / "images" / image["file_name"]), cv2.IMREAD_UNCHANGED).shape
         )
+
+
+def test_kept_images_and_masks_give_what_a_replay_gives(
+    crossing: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    without = tmp_path / crossing.name
+    shutil.copytree(crossing, without, ignore=shutil.ignore_patterns("instance"))
+    assert run_cli("export", without, "--format", "coco", "--out", tmp_path / "coco", "--every", 9) == 0
+    # What renders again is taken away.
+    monkeypatch.setattr("peopleboy.scenarios.export.export_runs.counted", lambda _report: None)
+    assert run_cli("export", crossing, "--format", "coco", "--out", tmp_path / "kept", "--every", 9) == 0
+    played, kept = (
+        {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+        for folder in (tmp_path / "coco", tmp_path / "kept")
+    )
+    assert played == kept
+    assert len(list((tmp_path / "kept" / "images").glob("*/thermal/*.png"))) == 7
+
+
+def test_annotations_have_the_attributes_of_the_person(coco: COCO, crossing: Path) -> None:
+    people = {person["name"]: person for person in open_run(crossing).played["people"]}
+    for one in coco.anns.values():
+        found, person = one["attributes"], people[one["name"]]
+        assert (found["sex"], found["age"], found["build"]) == (person["sex"], "adult", person["build"])
+        assert {name: found[name] for name in person["clothes"]} == person["clothes"]
+        assert one["posture"]

@@ -97,7 +97,7 @@ def test_an_export_that_fails_leaves_nothing_and_keeps_the_earlier_one(
     def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(coco, "write_images", fail)
+    monkeypatch.setattr(coco, "write_aside", fail)
     told = refusal(capsys, "export", crossing, "--format", "coco", "--out", out, "--overwrite")
     assert_names(told, "No space left on device")
     assert [path.name for path in tmp_path.iterdir()] == ["coco"]
