@@ -20,6 +20,7 @@ from peopleboy.tracker.footage.picture_names import (
     split_sequence,
     step_of,
 )
+from peopleboy.tracker.footage.radiometric import refuse_sequence
 from peopleboy.tracker.footage.read_picture import count_pages, read_pages, read_row
 from peopleboy.tracker.footage.read_tiff import Raw
 from peopleboy.tracker.footage.time_stamps import check_rising, time_stamps
@@ -73,6 +74,7 @@ def open_footage(path: Path) -> Footage:
         return _open_folder(_home_of_pictures(path), path.name)
     if not path.is_file():
         raise BadInput(f"{path}: no such folder or video")
+    refuse_sequence(path)
     if path.suffix.lower() in PAGED:
         return Pages(path, path.stem)
     if path.suffix.lower() in SUFFIXES:  # which a video reader would reduce to 8 bits

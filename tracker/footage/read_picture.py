@@ -13,6 +13,7 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.footage.radiometric import is_radiometric, read_celsius
 from peopleboy.tracker.footage.read_tiff import Raw, other_tiff, without_orientation
 from peopleboy.user_files import check_plain
 from peopleboy.wording import counted
@@ -39,6 +40,8 @@ def read_picture(path: Path, notes: list[str]) -> Raw:
         BadInput: it is damaged, of an unsupported kind, one of several in its file, or has pixels that are
             not finite.
     """
+    if is_radiometric(path):
+        return _finite(read_celsius(path, notes), str(path))
     if (others := other_tiff(path, notes)) is not None:
         _check_single(path, len(others))
         return _finite(others[0], str(path))
