@@ -130,7 +130,9 @@ def export(
 
     `mot` is the MOTChallenge format, which TrackEval reads. `coco` contains masks, boxes and keypoints.
     `images` contains, for each image, the person and body part at every pixel, and true depth. `yolo`
-    contains boxes for Ultralytics, and `yolo-pose` adds keypoints. `viper` is ViPER XML. `mcap` is a ROS 2
+    contains boxes for Ultralytics, and `yolo-pose` adds keypoints. `webdataset` contains tar files, and
+    `huggingface` parquet files for the library `datasets`, which it needs (extra `hub`); both with images,
+    masks and labels of one camera, and a Croissant file. `viper` is ViPER XML. `mcap` is a ROS 2
     bag and needs the package rosbags. `mp4` contains videos and needs the package av.
 
     `coco`, `images` and `mcap` contain all cameras. Images and masks that the run has not written are

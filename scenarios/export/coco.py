@@ -106,7 +106,7 @@ class _Annotations:
     ) -> None:
         number = len(self.images) + 1
         about = {"id": number, "video_id": video, "license": _LICENCE["id"]}
-        self.images.append(about | _image(run, camera, shot, attributes))
+        self.images.append(about | image_entry(run, camera, shot, attributes))
         for person in shot.people[camera]:
             if person["visible_px"] > 0:
                 own = {"id": len(self.annotations) + 1, "image_id": number}
@@ -192,9 +192,17 @@ def _truth(person: Row, attributes: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _image(
+def image_entry(
     run: FinishedRun, camera: str, shot: LabelledFrame, attributes: Mapping[str, Any]
 ) -> dict[str, Any]:
+    """Return the entry of an image, with time, poses of robot and camera, and hidden people.
+
+    Args:
+        run: the run.
+        camera: name of the camera.
+        shot: the frame.
+        attributes: constant attributes of each person, by name.
+    """
     geometry, robot = run.robot.cameras[camera].camera, shot.robot
     hidden = [p for p in shot.people[camera] if p["visible_px"] == 0 and is_row_in_image(p)]
     return {

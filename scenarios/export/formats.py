@@ -28,6 +28,12 @@ FORMATS: Final = Registry(
         ),
         "yolo": Entry(f"{_HERE}.yolo:write_yolo", "boxes, for Ultralytics"),
         "yolo-pose": Entry(f"{_HERE}.yolo:write_yolo_pose", "boxes and keypoints, for Ultralytics"),
+        "webdataset": Entry(
+            f"{_HERE}.hub_datasets:write_webdataset", "tar files of images and labels, for WebDataset"
+        ),
+        "huggingface": Entry(
+            f"{_HERE}.hub_datasets:write_huggingface", "parquet files of images and labels, for `datasets`"
+        ),
         "viper": Entry(f"{_HERE}.viper:write_viper", "ViPER XML"),
         "mcap": Entry(f"{_HERE}.ros.ros_bag:write_mcap", "ROS 2 bags"),
         "mp4": Entry(f"{_HERE}.video:write_mp4", "films"),
