@@ -12,7 +12,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .PHONY: demo test test-pages test-heavy test-install fuzz kill-tests soak lint format bench peers rl pages docs dist lock audit docker forget-kernels clean
 
 demo: $(INSTALLED)
-	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
+	$(BIN)/peopleboy run sunny_hall --out runs/demo --overwrite
 
 # A file's tests in one process: what they share is made, and compiled, once. `make test SLOW=1` runs whole runs,
 # lessons and reports, too, a second or more each; `make test THOROUGH=1` besides does with all what tests do with a
