@@ -302,7 +302,10 @@ def _label(
     taken: list[Plate],
     is_below: bool = False,
 ) -> None:
-    """Write a label on a dark plate above or below a box, inside the picture and clear of other plates."""
+    """Write a label on a dark plate above or below a box, inside the picture and clear of other plates.
+
+    A label that is moved away from its box gets a line to it.
+    """
     # The font grows with the scale, but not beyond what suits the height of the picture.
     size = max(min(0.2 * scale, canvas.shape[0] / 1200.0), 0.4)
     (width, height), descent = cv2.getTextSize(text, _FONT, size, 1)
@@ -318,9 +321,19 @@ def _label(
         places.append((x - 2, y - height - 2, x + width + 2, y + descent + 1))
     plate = next((place for place in places if not any(_touch(place, other) for other in taken)), places[0])
     taken.append(plate)
+    if plate != places[0]:
+        _lead(canvas, plate, (x, round(bottom - line if is_below else bottom + 4)), colour)
     under = canvas[max(plate[1], 0) : plate[3], max(plate[0], 0) : plate[2]]
     under[:] = under // 3
     cv2.putText(canvas, text, (x, plate[3] - descent - 1), _FONT, size, colour, 1, cv2.LINE_AA)
+
+
+def _lead(canvas: Picture, plate: Plate, corner: tuple[int, int], colour: Rgb) -> None:
+    """Draw a line from a label that had to make room to the corner of its box."""
+    x, y = corner
+    near = plate[3] if plate[3] < y else plate[1] if plate[1] > y else y
+    if near != y:
+        cv2.line(canvas, (x, y), (x, near), colour, 1, cv2.LINE_AA)
 
 
 def _touch(one: Plate, other: Plate) -> bool:
