@@ -86,7 +86,9 @@ def members(group: int) -> Iterator[list[str]]:
     for path in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
             words = path.read_text(encoding="utf-8").rpartition(")")[2].split()
-            if int(words[2]) == group and words[0] != "Z":
+            # A process whose first thread has ended keeps its files open until its last one has.
+            has_threads = words[0] != "Z" or len(list(path.with_name("task").iterdir())) > 1
+            if int(words[2]) == group and has_threads:
                 yield words
 
 
