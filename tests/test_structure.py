@@ -24,6 +24,9 @@ MOST_TWICE = 10
 SMALL_MODULES: dict[str, str] = {
     "behaviours.scripted": "a behaviour that the registry loads by its name",
     "scenarios.compiling": "imports numba, which a progress bar needs on a terminal only",
+    "scenarios.footage.detect_polarity": "imports the detector, which other footage does not need first",
+    "scenarios.footage.track_lines": "one of two ways to show tracks on the way",
+    "scenarios.recording.live_tracks": "the other one, which imports rerun",
 }
 
 # A folder with fewer modules needs one as well.

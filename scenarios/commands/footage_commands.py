@@ -101,7 +101,7 @@ def track(
     start: str | None,
     output: Output,
 ) -> None:
-    """Track people in recorded thermal images, in a video, or in the images of a live camera.
+    """Track people in thermal images, a video or a live camera.
 
     FOLDER contains PNG, TIFF, JPEG or BMP images with 8 or 16 bits. The command writes tracks.txt
     (MOTChallenge), tracks.parquet, run.json, contact_sheet.png and, if there is ground truth, metrics.json.

@@ -180,7 +180,7 @@ def test_an_error_in_it_names_its_line(capsys: pytest.CaptureFixture[str]) -> No
     [
         (
             ("run", "brief.yaml", "--tracker", "contour"),
-            ("'contour' uses no detector", "detection, handover"),
+            ("'contour' uses no detector", "detection, detection-live, handover"),
         ),
         (("run", "brief.yaml", "--tracker", "truth"), ("'truth' uses no detector",)),
         (("track", "plain/thermal", "--tracker", "thesis"), ("'thesis' uses no detector",)),
