@@ -255,7 +255,10 @@ def test_a_detector_is_found_by_name_in_the_working_directory(tracker: str) -> N
 @pytest.mark.parametrize(
     ("name", "says"),
     [
-        ("contour+detector_for_test:Mine", ("'contour' uses no detector", "detection, detection-live, handover, fused")),
+        (
+            "contour+detector_for_test:Mine",
+            ("'contour' uses no detector", "detection, detection-live, handover, fused"),
+        ),
         ("truth+detector_for_test:Mine", ("'truth' uses no detector",)),
         ("a:Tracker+detector_for_test:Mine", ("'a:Tracker' uses no detector",)),
         ("detection+detector_for_test:Deaf", ("detector 'detector_for_test:Deaf'", "`detect(image)`")),
