@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import cv2
@@ -11,7 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.scenarios.export.dataset_checks import _check_images
+from peopleboy.scenarios.export.datasheet import measure, write_datasheet
 from peopleboy.scenarios.export.splits import SPLITS, lacking_splits, split_lines, split_of
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
@@ -91,6 +95,20 @@ def test_its_sheet_tells_each_camera_s_images_and_one_that_sees_nothing_warm_is_
     cold = [cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) for path in rendered.glob("set/*/rear/*.png")]
     assert len(cold) == 2 * 2
     assert np.quantile(cold, 0.99) == 0
+
+
+def test_a_split_without_images_has_a_dash_in_the_sheet(rendered: Path, tmp_path: Path) -> None:
+    runs = [rendered / "set" / name for name in ("tiny-0", "tiny-1")]
+    bare = tmp_path / "tiny-1"
+    shutil.copytree(runs[1], bare, ignore=shutil.ignore_patterns("*.png"))
+    about = json.loads((rendered / "set" / "dataset.json").read_text())
+    about |= {"asked": {}, "choice": None, "size_mb": 1, "lacking": "", "drawn": {}}
+    statistics = {"all": measure(runs), "test": measure([bare])}
+    sheet = tmp_path / "README.md"
+    write_datasheet(sheet, statistics, (), about, [load_scenario(rendered / "tiny.yaml")], Distribution())
+    lines = [line for line in sheet.read_text().splitlines() if "images, mean" in line]
+    assert lines
+    assert all(line.endswith("| - |") for line in lines)
 
 
 def test_an_image_without_content_is_found(rendered: Path) -> None:
