@@ -52,8 +52,8 @@ class FrameChoice:
     """Which frames of each run a data set contains; by default, all.
 
     A person counts if the visible part is high enough, and a large enough share of the person is visible. A
-    frame is suitable if enough people count, and at least one, or if nobody is visible and empty frames are
-    kept.
+    frame is suitable if enough people count, and at least one, or if no person is visible and empty frames
+    are kept.
     """
 
     every: Annotated[int, Field(ge=1, description="Use only every Nth frame of a run."), Metavar("N")] = 1

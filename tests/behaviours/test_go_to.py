@@ -12,7 +12,7 @@ from peopleboy.geometry.pose2 import Pose2
 from tests.helpers.percepts.percepts import percept, person
 from tests.helpers.percepts.toy_world import Toy, drive, room, wall
 
-NOBODY = np.zeros((0, 2))
+NO_PEOPLE = np.zeros((0, 2))
 
 
 def away(_: float) -> tuple[float, float]:
@@ -26,7 +26,7 @@ def length_m(route):
 
 def test_on_free_floor_the_route_is_the_straight_line_to_a_cell() -> None:
     there = EchoMap((0.0, 0.0), (4.0, 0.0), EchoMapConfig())
-    route = there.find_route(Pose2(), (4.0, 0.0), 0.0, NOBODY, 1.0)
+    route = there.find_route(Pose2(), (4.0, 0.0), 0.0, NO_PEOPLE, 1.0)
     assert length_m(route) == pytest.approx(4.0, abs=0.1)
     assert np.abs(route[:, 1]).max() <= 0.1
 
@@ -36,7 +36,7 @@ def test_a_route_keeps_its_distance_from_an_echo_and_from_people() -> None:
     ranges = np.full(16, 5.0)
     ranges[3:5] = 1.8
     there.update(replace(percept(0.0), sonar_m=ranges))
-    route = there.find_route(Pose2(), (4.0, 0.0), 0.0, NOBODY, 1.0)
+    route = there.find_route(Pose2(), (4.0, 0.0), 0.0, NO_PEOPLE, 1.0)
     hits = np.array([[1.95, 0.3], [1.95, -0.3]])  # 10 degrees to either side
     assert min(np.hypot(*(route - hit).T).min() for hit in hits) > config.body_m - config.cell_m
     person_at = np.array([[2.0, 2.0]])
@@ -51,10 +51,10 @@ def test_floor_on_which_a_cone_passes_is_free_again_and_old_echoes_are_forgotten
     blocked[3:5] = 1.8
     there = EchoMap((0.0, 0.0), (4.0, 0.0), config)
     there.update(replace(percept(0.0), sonar_m=blocked))
-    around = there.find_route(Pose2(), (4.0, 0.0), 0.0, NOBODY, 1.0)
-    late = there.find_route(Pose2(), (4.0, 0.0), config.keep_s + 1.0, NOBODY, 1.0)
+    around = there.find_route(Pose2(), (4.0, 0.0), 0.0, NO_PEOPLE, 1.0)
+    late = there.find_route(Pose2(), (4.0, 0.0), config.keep_s + 1.0, NO_PEOPLE, 1.0)
     there.update(percept(1.0))
-    again = there.find_route(Pose2(), (4.0, 0.0), 1.0, NOBODY, 1.0)
+    again = there.find_route(Pose2(), (4.0, 0.0), 1.0, NO_PEOPLE, 1.0)
     assert length_m(around) > length_m(again) == pytest.approx(length_m(late)) == pytest.approx(4.0, abs=0.1)
 
 

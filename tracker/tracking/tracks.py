@@ -81,12 +81,12 @@ class Tracks:
         columns: Sequence[int],
         was_lost: Sequence[bool],
     ) -> None:
-        """Update the motion filters; that of a lost track starts anew, as its path was extrapolated."""
+        """Update the motion filters; that of a lost track starts again, as its path was extrapolated."""
         later = detections.measurement.update(self.states.take(np.array(rows)), columns)
         if any(was_lost):
             lost = np.flatnonzero(was_lost)
-            anew = detections.measurement.initiate([columns[row] for row in lost.tolist()])
-            later = later.replaced(lost, anew)
+            restarted = detections.measurement.initiate([columns[row] for row in lost.tolist()])
+            later = later.replaced(lost, restarted)
         self.states = self.states.replaced(np.array(rows), later)
         self.last_seen = self.last_seen.replaced(np.array(rows), later)
 

@@ -47,7 +47,7 @@ def play(env: PeopleBoyEnv, steps: int, action: tuple[float, float] = (0.2, 0.3)
 
 
 @pytest.mark.thorough
-def test_the_three_names_are_known_to_who_imports_peopleboy() -> None:
+def test_the_environments_are_known_after_import_of_peopleboy() -> None:
     code = f"import gymnasium, peopleboy; [gymnasium.make(name) for name in {list(ENVIRONMENTS)}]"
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True, timeout=120)
 

@@ -85,12 +85,14 @@ def test_what_is_not_a_sequence_is_refused_as_one(
         ("export", run, "--format", "yolo", "--most-people", 1, "--least-people", 2),
     ):
         refusal(capsys, *order)
-    told = refusal(capsys, "export", run, "--format", "viper", "--every", 2, "--out", tmp_path / "viper")
-    assert_names(told, "--every 2", "viper", "sequences")
-    told = refusal(capsys, "export", run, "--format", "coco", "--least-people", 9, "--out", tmp_path / "c")
-    assert_names(told, "--least-people 9", "no frame")
-    told = refusal(capsys, "render", rendered.parent / "tiny.yaml", "--every", 2, "--out", tmp_path / "set")
-    assert_names(told, "--every 2", "--frames")
+    printed = refusal(capsys, "export", run, "--format", "viper", "--every", 2, "--out", tmp_path / "viper")
+    assert_names(printed, "--every 2", "viper", "sequences")
+    printed = refusal(capsys, "export", run, "--format", "coco", "--least-people", 9, "--out", tmp_path / "c")
+    assert_names(printed, "--least-people 9", "no frame")
+    printed = refusal(
+        capsys, "render", rendered.parent / "tiny.yaml", "--every", 2, "--out", tmp_path / "set"
+    )
+    assert_names(printed, "--every 2", "--frames")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -257,8 +257,8 @@ def test_a_truncated_video_is_tracked_as_far_as_it_goes_and_says_so(tmp_path):
     ],
 )
 def test_options_that_cannot_be_are_refused(tmp_path, options, named):
-    told = refusal(write_folder(tmp_path / "clip"), "--out", tmp_path / "out", *options)
-    assert_names(told, *named)
+    printed = refusal(write_folder(tmp_path / "clip"), "--out", tmp_path / "out", *options)
+    assert_names(printed, *named)
     assert not (tmp_path / "out").exists()
 
 
@@ -284,11 +284,11 @@ def test_truth_is_read_as_boxes_polygons_and_motchallenge(tmp_path):
 def test_of_one_annotated_person_only_what_it_can_tell_is_scored_at_once_and_later(tmp_path):
     clip, out = write_folder(tmp_path / "clip"), tmp_path / "out"
     otb(clip)
-    told = call(clip, "--out", out, "--start", "truth").stdout
+    printed = call(clip, "--out", out, "--start", "truth").stdout
     again = CliRunner().invoke(evaluate, [str(out)]).stdout
     files = ("--truth", str(clip / "groundtruth_rect.txt"), "--tracks", str(out / "tracks.txt"))
     assert again == CliRunner().invoke(evaluate, files).stdout
-    assert told.startswith(again)
+    assert printed.startswith(again)
     table, _, unknown = again.partition("Unknown: ")
     names = {line.split()[0] for line in table.splitlines() if line.strip()}
     assert {"CR", "AR", "MOTP", "IDR", "IDSW", "true_tracks"} <= names
@@ -367,14 +367,14 @@ def test_black_hot_images_are_detected_and_tracked_like_white_hot_ones(tmp_path)
     (tmp_path / "black").mkdir()
     for number in range(16):
         cv2.imwrite(str(tmp_path / "black" / f"frame{number + 1}.png"), 255 - walker(number))
-    told = {}
+    printed = {}
     for name in ("white", "black"):
         result = call(tmp_path / name, "--out", tmp_path / f"{name}-out")
-        told[name] = result.stderr
+        printed[name] = result.stderr
         assert result.exit_code == 0
-    assert "dark pixels are taken as warm" in told["black"]
-    assert "dark pixels" not in told["white"]
-    tracks = [(tmp_path / f"{name}-out" / "tracks.txt").read_text() for name in told]
+    assert "dark pixels are taken as warm" in printed["black"]
+    assert "dark pixels" not in printed["white"]
+    tracks = [(tmp_path / f"{name}-out" / "tracks.txt").read_text() for name in printed]
     assert tracks[0] == tracks[1] != ""
     given = call(tmp_path / "black", "--out", tmp_path / "given", "--polarity", "white-hot")
     assert "dark pixels" not in given.stderr

@@ -68,16 +68,16 @@ def test_a_reader_that_ends_ends_it_with_all_files_written(tmp_path):
     tracking.stdin.flush()
     tracking.stdin.close()
     with tracking.stderr as errors:
-        told = errors.read().decode()
-    assert tracking.wait(timeout=60) == 0, told
+        printed = errors.read().decode()
+    assert tracking.wait(timeout=60) == 0, printed
     assert about(tmp_path / "out")["frames"] == 3
 
 
 def test_encoded_video_of_a_pipe_is_decoded(tmp_path):
     tracking = start(tmp_path / "out")
-    told, errors = tracking.communicate(write_video(tmp_path / "film.mkv").read_bytes(), timeout=120)
+    printed, errors = tracking.communicate(write_video(tmp_path / "film.mkv").read_bytes(), timeout=120)
     assert tracking.returncode == 0, errors.decode()
-    assert json.loads(told.splitlines()[0])["frame"] == 1
+    assert json.loads(printed.splitlines()[0])["frame"] == 1
     assert (about(tmp_path / "out")["width"], about(tmp_path / "out")["height"]) == SIZE[::-1]
     assert "of 12 images dropped" in errors.decode()
 

@@ -14,8 +14,8 @@ from tests.helpers.some_of import some_of
     ("scale", "span"), [("1,0", "29315..30415"), ("0.01,0", "293..304"), ("0.1,-273.15", "2658..2768")]
 )
 def test_temperatures_of_no_place_with_people_are_refused_with_the_scale_that_fits(tmp_path, scale, span):
-    told = refusal(write_counts(tmp_path / "clip"), "--out", tmp_path / "out", "--scale", scale)
-    assert_names(told, f"--scale {scale}", f"{span} degC", "--scale centikelvin")
+    printed = refusal(write_counts(tmp_path / "clip"), "--out", tmp_path / "out", "--scale", scale)
+    assert_names(printed, f"--scale {scale}", f"{span} degC", "--scale centikelvin")
     assert not (tmp_path / "out").exists()
 
 
@@ -48,8 +48,8 @@ def test_dead_pixels_an_empty_border_and_unknown_units_are_plausible():
     "start", ["400,10,20,50", "150,10,20,50", "-5,10,20,50", "nan,10,20,50", "10,100,20,50"]
 )
 def test_a_start_that_is_not_inside_the_pictures_is_refused(tmp_path, start):
-    told = refusal(write_folder(tmp_path / "clip", 3), "--out", tmp_path / "out", "--start", start)
-    assert_names(told, f"--start {start}", "160x120")
+    printed = refusal(write_folder(tmp_path / "clip", 3), "--out", tmp_path / "out", "--start", start)
+    assert_names(printed, f"--start {start}", "160x120")
     assert not (tmp_path / "out").exists()
 
 
@@ -78,8 +78,8 @@ def test_a_video_that_is_none_is_refused_on_one_line_and_no_library_adds_another
 
 def test_counts_of_temperatures_are_never_black_hot(tmp_path):
     clip = write_counts(tmp_path / "clip", 3)
-    told = refusal(clip, "--out", tmp_path / "out", "--scale", "centikelvin", "--polarity", "black-hot")
-    assert_names(told, "--polarity", "--scale")
+    printed = refusal(clip, "--out", tmp_path / "out", "--scale", "centikelvin", "--polarity", "black-hot")
+    assert_names(printed, "--polarity", "--scale")
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,7 @@ def test_only_one_kind_of_place_keeps_its_proportions(only: str, kinds: int) -> 
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "printed"),
     [
         ("peple: 3\n", "peple: unknown name; did you mean 'people'"),
         ("place: {attic: 1}\n", "unknown value 'attic'"),
@@ -45,12 +45,12 @@ def test_only_one_kind_of_place_keeps_its_proportions(only: str, kinds: int) -> 
         ("pitch: [0, 40]\n", "within -15 .. 15 deg"),
     ],
 )
-def test_a_wrong_file_is_refused_in_one_line(tmp_path: Path, content: str, told: str) -> None:
+def test_a_wrong_file_is_refused_in_one_line(tmp_path: Path, content: str, printed: str) -> None:
     file = tmp_path / "own.yaml"
     file.write_text(content, encoding="utf-8")
     with pytest.raises(BadInput, match=r"own\.yaml") as refused:
         SetOptions(random_worlds=True, distribution=file).contents()
-    assert told in str(refused.value)
+    assert printed in str(refused.value)
     assert "\n" not in str(refused.value)
 
 
