@@ -74,8 +74,6 @@ def run(
     """
     from peopleboy.scenarios.files.library import suite_names
     from peopleboy.scenarios.files.load import load_scenario
-    from peopleboy.scenarios.recording.recording_file import check_installed
-    from peopleboy.scenarios.recording.viewer import live_viewer
 
     _check_physics(given)
     is_suite = scenario in suite_names()
@@ -90,6 +88,8 @@ def run(
     if loaded is not None:
         loaded = options.applied_to(loaded)
     if live:
+        from peopleboy.scenarios.recording.recording_file import check_installed
+
         check_installed("--live")
     if live and (loaded is None or not options.record or not output.is_text):
         raise BadInput(
@@ -110,6 +110,8 @@ def run(
         )
     with ExitStack() as stack:
         if live:
+            from peopleboy.scenarios.recording.viewer import live_viewer
+
             options = replace(options, viewer=stack.enter_context(live_viewer(click.echo)))
         _run_one(loaded, options, output)
 

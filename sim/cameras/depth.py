@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import replace
+from statistics import NormalDist
 from typing import Final
 
 import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
 from peopleboy.sim.cameras.camera_config import DEPTH_BASELINE_M, DepthConfig
 from peopleboy.sim.cameras.imaging.camera_view import CameraView, MaterialTable
@@ -105,12 +105,13 @@ def hole_share(depth_m: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _hole_levels() -> NDArray[np.float32]:
     """Return (1025,) levels of smooth noise below which there is a hole, for depths from 0 to 10 m."""
-    return np.asarray(ndtri(hole_share(np.linspace(0.0, 10.0, 1025))), np.float32)
+    levels = map(NormalDist().inv_cdf, hole_share(np.linspace(0.0, 10.0, 1025)))
+    return np.fromiter(levels, np.float32, 1025)
 
 
 def _edge_moves() -> NDArray[np.int8]:
     """Return (256,) [px] equally likely integer steps of a Gaussian with a standard deviation of 0.6 px."""
-    return np.asarray(np.rint(0.6 * ndtri((np.arange(256) + 0.5) / 256)), np.int8)
+    return np.array([round(NormalDist(0.0, 0.6).inv_cdf((k + 0.5) / 256)) for k in range(256)], np.int8)
 
 
 _LEVELS, _MOVES = _hole_levels(), _edge_moves()

@@ -6,17 +6,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
 from peopleboy.user_files import read_text
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 MISSING = "PyBullet is not installed: there are wheels for Python 3.11 to 3.13 on Linux, macOS and Windows"
 """Message if PyBullet or its models are needed but not installed."""
@@ -73,6 +76,7 @@ _DEEPEST = 200  # links in a chain: the pose of a link is that of its parent and
 _NAMED = {".obj": r"^mtllib\s+(?:.*\s)?(\S+)\s*$", ".mtl": r"^(?:map_\w+|bump)\s+(?:.*\s)?(\S+)\s*$"}
 
 Numbers = NDArray[np.float64]
+LinkPose = tuple[Numbers, "Rotation"]
 Joints = dict[str, ElementTree.Element]  # by child link
 
 
@@ -206,10 +210,10 @@ def _read_joints(root: ElementTree.Element, path: Path) -> Joints:
     return joints
 
 
-def link_pose(link: str, joints: Joints) -> tuple[Numbers, Rotation]:
+def link_pose(link: str, joints: Joints) -> LinkPose:
     """Return position and rotation of a link in the root link's frame."""
     if link not in joints:
-        return np.zeros(3), Rotation.identity()
+        return _root_pose()
     position, turn = link_pose(link_named(joints[link], "parent"), joints)
     offset, rotation = _origin(joints[link])
     return position + turn.apply(offset), turn * rotation
@@ -217,7 +221,7 @@ def link_pose(link: str, joints: Joints) -> tuple[Numbers, Rotation]:
 
 def _read_visual(
     visual: ElementTree.Element,
-    link: tuple[Numbers, Rotation],
+    link: LinkPose,
     colours: dict[str, tuple[float, float, float]],
     path: Path,
 ) -> UrdfShape:
@@ -229,7 +233,7 @@ def _read_visual(
     return UrdfShape(shape, _rgb(material) if material.find("color") is not None else named)
 
 
-def read_shape(element: ElementTree.Element, link: tuple[Numbers, Rotation], path: Path) -> Shape:
+def read_shape(element: ElementTree.Element, link: LinkPose, path: Path) -> Shape:
     """Read a visual or collision element of a link with a given position and rotation."""
     offset, rotation = _origin(element)
     kind, size, mesh = _read_geometry(element, path)
@@ -291,10 +295,12 @@ def _places_of(urdf: Path, name: str) -> list[Path]:
     return places
 
 
-def _origin(element: ElementTree.Element) -> tuple[Numbers, Rotation]:
+def _origin(element: ElementTree.Element) -> LinkPose:
+    from scipy.spatial.transform import Rotation  # here, as it is slow to import
+
     origin = element.find("origin")
     if origin is None:
-        return np.zeros(3), Rotation.identity()
+        return _root_pose()
     turn = Rotation.from_euler("xyz", read_numbers(origin.get("rpy", "0 0 0"))[:3])
     return read_numbers(origin.get("xyz", "0 0 0"))[:3], turn
 
@@ -323,12 +329,16 @@ def _vector(numbers: Numbers) -> Vector:
     return x, y, z
 
 
-def _quaternion(rotation: Rotation) -> Quaternion:
+def _quaternion(rotation: "Rotation") -> Quaternion:
     x, y, z, w = (float(number) for number in rotation.as_quat())
     return x, y, z, w
 
 
-_HERE = (np.zeros(3), Rotation.identity())
+def _root_pose() -> LinkPose:
+    """Return the pose of the root link in its own frame."""
+    from scipy.spatial.transform import Rotation  # here, as it is slow to import
+
+    return np.zeros(3), Rotation.identity()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -398,8 +408,8 @@ def _read_link(link: ElementTree.Element, joints: Joints, path: Path) -> UrdfLin
         joint="" if joint is None else joint.get("name", ""),
         turns=joint is not None and joint.get("type") == "continuous",
         base_from_link=base_from_link,
-        visible=tuple(read_shape(each, _HERE, path) for each in link.findall("./visual") or solid),
-        solid=tuple(read_shape(each, _HERE, path) for each in solid),
+        visible=tuple(read_shape(each, _root_pose(), path) for each in link.findall("./visual") or solid),
+        solid=tuple(read_shape(each, _root_pose(), path) for each in solid),
         mass_kg=_number(link, "./inertial/mass", "value"),
         centre_m=np.zeros(3) if centre is None else read_numbers(centre.get("xyz", "0 0 0")),
         inertia_kg_m2=_number(link, "./inertial/inertia", "izz"),

@@ -79,11 +79,11 @@ class Workers:
     """Workers that execute tasks.
 
     Attributes:
-        count: number of local processes; with one, tasks run in the calling process.
+        count: number of local processes; with one, tasks run in the calling process; None for one per core.
         scheduler: address of a Dask scheduler whose workers are used instead; None for this machine.
     """
 
-    count: int = 1
+    count: int | None = 1
     scheduler: str | None = None
 
 
@@ -95,9 +95,7 @@ def chosen_workers(count: int | None, scheduler: str | None) -> Workers:
     """
     if scheduler is not None and count is not None:
         raise BadInput(f"--workers {count}: not with --scheduler, whose cluster has its own; leave one out")
-    from joblib import cpu_count  # here, as importing it takes half as long as all of `peopleboy --help`
-
-    return Workers(cpu_count() if count is None else count, scheduler)
+    return Workers(count, scheduler)
 
 
 Source = dict[str, str]

@@ -233,7 +233,9 @@ def _outcomes(
         from peopleboy.scenarios.running.engine.cluster import on_cluster  # here, as Dask is optional
 
         yield from on_cluster(tasks, workers.scheduler)
-    elif min(workers.count, len(tasks)) > 1:
-        yield from in_processes(tasks, workers.count)
+        return
+    processes = joblib.cpu_count() if workers.count is None else workers.count
+    if min(processes, len(tasks)) > 1:
+        yield from in_processes(tasks, processes)
     else:
         yield from ((number, attempt(task, report_progress)) for number, task in enumerate(tasks))

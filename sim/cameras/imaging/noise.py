@@ -1,12 +1,12 @@
 """Fast Gaussian noise for whole images."""
 
 import math
+from statistics import NormalDist
 from typing import Final
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
 from peopleboy.random_streams import stream
 from peopleboy.sim.cameras.camera_config import ThermalConfig
@@ -16,7 +16,7 @@ _LEVELS = 4096
 
 def _quantiles() -> NDArray[np.float32]:
     """Return the middles of equally likely slices of the normal distribution, scaled to variance 1."""
-    values = ndtri((np.arange(_LEVELS) + 0.5) / _LEVELS)
+    values = np.array([NormalDist().inv_cdf((k + 0.5) / _LEVELS) for k in range(_LEVELS)])
     return np.asarray(values / values.std(), np.float32)
 
 

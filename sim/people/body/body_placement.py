@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.geometry.vectors import fma, multiply
 from peopleboy.sim.people.body.anthropometry import FOREARM_LENGTH, HAND_LENGTH, UPPER_ARM_LENGTH
@@ -21,6 +20,7 @@ from peopleboy.sim.people.body.skeleton import (
     pelvis_shift,
     point_along,
     posture_rotations,
+    turned_back,
 )
 
 Array = NDArray[np.float64]
@@ -170,8 +170,8 @@ def turn_arm(rotations: Array, side: str, target: Array, stature_m: float) -> Ar
     forearm = along * reach - elbow * upper
     turned = rotations.copy()
     turned[BONE_INDEX[f"{side}_upper_arm"]] = point_along(_tuple(elbow))
-    back = Rotation.from_rotvec(turned[BONE_INDEX[f"{side}_upper_arm"]]).inv()
-    turned[BONE_INDEX[f"{side}_forearm"]] = point_along(_tuple(back.apply(forearm)))
+    upper_arm = turned[BONE_INDEX[f"{side}_upper_arm"]]
+    turned[BONE_INDEX[f"{side}_forearm"]] = point_along(turned_back(upper_arm, forearm))
     turned[BONE_INDEX[f"{side}_hand"]] = 0.0
     return turned
 

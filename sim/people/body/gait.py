@@ -11,7 +11,6 @@ from typing import Final
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.people.body.body_shapes import SIDES, sole_points
 from peopleboy.sim.people.body.manner import USUAL, Manner, bearing
@@ -273,6 +272,8 @@ class Gait:
         self, rotations: Array, sway: Array, feet: dict[str, tuple[Array, Array]], reach: float
     ) -> Array:
         """Return (P,) [m] heights of the pelvis at which both legs reach their feet: a smooth curve."""
+        from scipy.spatial.transform import Rotation  # here, as it is slow to import
+
         limits = []
         reach, turn = reach * self._leg_lengths().sum(), Rotation.from_rotvec(rotations[:, 0])
         for side in SIDES:
@@ -293,6 +294,8 @@ class Gait:
 
     def _bend_leg(self, side: str, rotations: Array, pelvis: Array, ankle: Array, pitch: Array) -> None:
         """Turn thigh, shin and foot so that the ankle meets its target (two-bone inverse kinematics)."""
+        from scipy.spatial.transform import Rotation  # here, as it is slow to import
+
         thigh, shin = self._leg_lengths()
         hip_turn = Rotation.from_rotvec(rotations[:, 0])
         gap = ankle - pelvis - hip_turn.apply(self._offsets[BONE_INDEX[f"{side}_thigh"]])

@@ -7,9 +7,8 @@ from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, lateral, point_along
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, lateral, point_along, turned_back
 
 Array = NDArray[np.float64]
 Hold = Literal["free", "pocket", "strap", "telephone", "in_front", "carries"]
@@ -175,8 +174,7 @@ def held_arms(holds: tuple[Hold, Hold]) -> tuple[Array, NDArray[np.bool_]]:
         elbow, palm = (mirrored * point for point in _ELBOW_AND_PALM[hold])
         upper, fore, hand = (BONE_INDEX[f"{side}_{bone}"] for bone in ("upper_arm", "forearm", "hand"))
         rotations[upper] = point_along(tuple(elbow))
-        back = Rotation.from_rotvec(rotations[upper]).inv()
-        rotations[fore] = point_along(tuple(back.apply(palm - elbow)))
+        rotations[fore] = point_along(turned_back(rotations[upper], palm - elbow))
         is_held[[upper, fore, hand]] = True
     return rotations, is_held
 

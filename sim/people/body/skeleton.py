@@ -6,7 +6,6 @@ from enum import StrEnum
 import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.people.body import anthropometry as table
 from peopleboy.sim.people.body.anthropometry import BodySize
@@ -287,9 +286,20 @@ def posture_rotations(posture: Posture) -> Array:
 def _cross_forearms(rotations: Array) -> None:
     """Lay the forearms across the chest, the left one above the right."""
     for side, direction in (("left", (0.26, -0.95, 0.24)), ("right", (0.26, 0.95, 0.02))):
-        upper = Rotation.from_rotvec(rotations[BONE_INDEX[f"{side}_upper_arm"]])
-        in_arm = upper.inv().apply(np.array(direction))
-        rotations[BONE_INDEX[f"{side}_forearm"]] = point_along((in_arm[0], in_arm[1], in_arm[2]))
+        upper = rotations[BONE_INDEX[f"{side}_upper_arm"]]
+        rotations[BONE_INDEX[f"{side}_forearm"]] = point_along(turned_back(upper, np.array(direction)))
+
+
+def turned_back(rotation: Array, direction: Array) -> Vector:
+    """Return a (3,) direction in the frame of a bone that was turned by a (3,) rotation vector [rad].
+
+    Source: Rodrigues' formula. SciPy's rotations take longer to import than a scenario to check.
+    """
+    angle = max(float(np.linalg.norm(rotation)), 1e-12)
+    axis, cosine = rotation / angle, math.cos(angle)
+    across = np.cross(axis, direction) * math.sin(angle)
+    x, y, z = direction * cosine - across + axis * (axis @ direction) * (1.0 - cosine)
+    return float(x), float(y), float(z)
 
 
 def pelvis_shift(posture: Posture) -> float:
