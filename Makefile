@@ -59,7 +59,7 @@ bench: $(READY)
 peers: $(READY)
 	$(BIN)/python -m benchmarks.peers
 
-# For examples/train_follower.py. PyPI's torch would bring gigabytes of CUDA along.
+# For examples/learning/ppo.py. PyPI's torch would bring gigabytes of CUDA along.
 rl: $(READY)
 	$(PIP) --no-deps --index-url https://download.pytorch.org/whl/cpu torch
 	$(PIP) --editable '.[rl,viewer]'

@@ -1,1 +1,1 @@
-"""A follower trained by an evolution strategy in NumPy; the weights are in the repository."""
+"""A robot controller that is trained with PPO; the weights of two are in the repository."""

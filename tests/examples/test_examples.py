@@ -4,10 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
-from examples import price_of_perception
-from examples.follower_view import SIZE, FollowerView
+from examples.warm_patch import WarmPatch
+from peopleboy import Frame
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from tests.helpers.runs.exported import make_run
 from tests.helpers.some_of import some_of
@@ -37,54 +36,17 @@ def scene(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.slow
-def test_all_three_pairs_of_eyes_find_a_person_in_plain_sight(scene: Path) -> None:
-    done = CliRunner().invoke(price_of_perception.main, [str(scene), "--seeds", "1"])
-    assert done.exit_code == 0, done.output
-    lines = done.output.splitlines()
-    assert lines[1].split() == ["truth", "tracks", "pixels"]
-    assert next(line for line in lines if "found" in line).split().count("100.00") == 3
-    assert CliRunner().invoke(price_of_perception.main, ["--eyes", "nose"]).exit_code == 2
-
-
 def test_the_warm_patch_is_where_the_true_person_is(scene: Path) -> None:
+    tracker = WarmPatch(np.random.default_rng(0))
     env = PeopleBoyEnv(scene, observation="pixels")
     observation, info = env.reset(seed=0)
-    box = info["truth"].people[0].box
-    x, height = price_of_perception.see_warmth(observation)
-    assert x == pytest.approx((box[0] + box[2] / 2.0 - 159.5) / 160.0, abs=0.05)
-    assert height == pytest.approx(box[3] / 240.0, abs=0.08)
+    found = tracker.update(Frame.from_image(observation["thermal"][:, :, 0], 0.0))
+    left, _, width, height = info["truth"].people[0].box
+    (x, _, wide, tall), *_ = [track.boxes["thermal"] for track in found]
+    assert x + wide / 2.0 == pytest.approx(left + width / 2.0, abs=8.0)
+    assert tall == pytest.approx(height, abs=20.0)
+    assert tracker.update(Frame.from_image(np.zeros((240, 320), np.uint8), 0.1)) == ()
     env.close()
-
-
-def test_the_view_of_the_follower_stays_within_its_space_and_remembers_where_the_person_was(
-    scene: Path,
-) -> None:
-    env = FollowerView(PeopleBoyEnv(scene, observation="truth"))
-    seen, _ = env.reset(seed=0)
-    assert seen[0] == 1.0
-    while seen[0]:  # turn away to the right: the person leaves to the left
-        seen, *_ = env.step(np.array([0.0, -1.0], np.float32))
-        assert seen.shape == (SIZE,)
-        assert env.observation_space.contains(seen)
-    assert seen[6] == -1.0
-    env.close()
-
-
-def test_a_follower_is_trained_kept_without_pickles_and_compared(scene: Path, tmp_path: Path) -> None:
-    pytest.importorskip("stable_baselines3")
-    from examples import train_follower
-
-    kept = tmp_path / "follower.npz"
-    options = [str(scene), "--seeds", "1", "--out", str(kept)]
-    assert CliRunner().invoke(train_follower.main, [*options, "--steps", "0"]).exit_code == 2
-    trained = CliRunner().invoke(train_follower.main, [*options, "--steps", "1"])
-    assert trained.exit_code == 0, trained.output
-    again = CliRunner().invoke(train_follower.main, [*options, "--steps", "0"])
-    assert "learned - written" in again.output
-    assert trained.output.endswith(again.output)
-    with np.load(kept, allow_pickle=False) as weights:
-        assert all(weights[name].dtype == np.float32 for name in weights)
 
 
 ACROSS: dict[str, Any] = WALKING | {
