@@ -18,8 +18,8 @@ from benchmarks import call
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.validation import validated
-from peopleboy.scenarios.running.compare_controllers import figures_of
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
+from peopleboy.scenarios.scores.tables.drive_comparison import figures_of
 from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.evaluation.table import to_json
 from peopleboy.wording import hint

@@ -299,31 +299,27 @@ def compare(
     If a comparison is interrupted, run the command again to resume it.
     """
     from peopleboy.scenarios.files.suite import scenarios_of
-    from peopleboy.scenarios.running.compare_controllers import (
-        Controller,
-        Figures,
-        compare,
-        keep_comparison,
-        parse_controller,
-        show_comparison,
-    )
+    from peopleboy.scenarios.running.compare_controllers import compare, parse_controller
+    from peopleboy.scenarios.scores.tables.drive_comparison import DriveComparison
+    from peopleboy.scenarios.scores.tables.show_scores import print_comparison
 
     _check_physics(given)
-    loaded = scenarios_of(scenarios or ("single_follow",))
     chosen = [parse_controller(text) for text in controllers.split(",")]
-    out, found = given.out or Path("runs") / "compare", []
-    compared: dict[str, dict[Controller, list[Figures]]] = {}
-    for scenario in loaded:
-        runs = compare(scenario, chosen, seeds, given.make(seed=0, out=out / scenario.name), workers)
-        compared[scenario.name] = runs
-    together_name = f"all {len(loaded)} scenarios"
-    if len(loaded) > 1:
-        together = {one: [run for runs in compared.values() for run in runs[one]] for one in chosen}
-        compared[together_name] = together
-    for name, runs in compared.items():
-        folder = out if name == together_name else out / name
-        found.append(keep_comparison(name, runs, folder))
+    out = given.out or Path("runs") / "compare"
+    compared = {}
+    for scenario in scenarios_of(scenarios or ("single_follow",)):
+        folder = out / scenario.name
+        runs = compare(scenario, chosen, seeds, given.make(seed=0, out=folder), workers)
+        compared[folder] = DriveComparison(scenario.name, runs)
+    if len(compared) > 1:
+        together = {
+            str(one): [run for found in compared.values() for run in found.runs[str(one)]] for one in chosen
+        }
+        compared[out] = DriveComparison(f"all {len(compared)} scenarios", together)
+    for folder, found in compared.items():
+        found.save(folder)
         if output.is_text:
-            show_comparison(name, runs)
+            print_comparison(found)
             click.echo(folder / "comparison.png")
-    output.results(lambda: {"comparisons": found}, lambda: None)
+    contents = [found.to_json() for found in compared.values()]
+    output.results(lambda: {"comparisons": contents}, lambda: None)

@@ -2,7 +2,7 @@
 
 import math
 from array import array
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Final
 
@@ -149,10 +149,7 @@ def way_m(robot: Floats) -> float:
 Row = tuple[str, float, str, str]  # name, value, unit, explanation
 
 # Records have shares and radians, tables percent and degrees.
-_IN_UNIT: Final[Mapping[str, Callable[[float], float]]] = {
-    "%": lambda share: 100.0 * share,
-    "deg": math.degrees,
-}
+_IN_UNIT: Final[Mapping[str, float]] = {"%": 100.0, "deg": math.degrees(1.0)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,6 +164,11 @@ class Metric:
     def label(self) -> str:
         """Name with unit."""
         return f"{self.name}, {self.unit}" if self.unit else self.name
+
+    @property
+    def factor(self) -> float:
+        """Value in the unit of tables per value in a record."""
+        return _IN_UNIT.get(self.unit, 1.0)
 
 
 def metric(name: str, unit: str, meaning: str) -> Any:
@@ -187,7 +189,7 @@ class ScoreRecord:
     def rows(self) -> list[Row]:
         """Return the metrics as table rows: name, value, unit, explanation."""
         return [
-            (one.name, _IN_UNIT.get(one.unit, float)(getattr(self, key)), one.unit, one.meaning)
+            (one.name, one.factor * getattr(self, key), one.unit, one.meaning)
             for key, one in self.metrics().items()
         ]
 

@@ -1,6 +1,6 @@
 """Result of an episode of an environment, which a saved run repeats: scores, end, and rewards by step."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Final
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.drive_record import Metric
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
 from peopleboy.scenarios.scores.goal_metrics import GoalScore
 
@@ -43,6 +44,13 @@ class DriveScores:
 
 DRIVE_GROUPS: Final = tuple(field.name for field in fields(DriveScores))
 """Groups of metrics.json on how the robot drove."""
+
+DRIVE_METRICS: Final[Mapping[str, Metric]] = {
+    key: metric
+    for score in (GoalScore, FollowingScore, CorridorScore, ComfortScore)
+    for key, metric in score.metrics().items()
+}
+"""Metrics of these groups by their key."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

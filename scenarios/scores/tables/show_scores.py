@@ -4,20 +4,24 @@ import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from itertools import zip_longest
+from typing import Final
 
 from rich.console import Console
 from rich.table import Table
 
-from peopleboy.scenarios.scores.bootstrap import PairedDifference
-from peopleboy.scenarios.scores.by_tracker import Difference, Groups, differences
+from peopleboy.scenarios.scores.bootstrap import Interval, PairedDifference
+from peopleboy.scenarios.scores.by_tracker import Groups, differences
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
-from peopleboy.scenarios.scores.drive_record import Row
+from peopleboy.scenarios.scores.drive_record import Metric, Row
 from peopleboy.scenarios.scores.summaries import summarise
+from peopleboy.scenarios.scores.tables.drive_comparison import DriveComparison
 from peopleboy.scenarios.scores.tables.score_table import ScoreTable
 from peopleboy.scenarios.scores.tables.write_table import caption, table_cells
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, Figure, rows
 from peopleboy.wording import counted
+
+_WIDE: Final = 10_000  # [characters]
 
 
 def print_scores(scores: Scores, who: str = "people", figures: Sequence[Figure] = FIGURES) -> None:
@@ -49,6 +53,27 @@ def print_comfort(by_tracker: Mapping[str, ComfortScore]) -> None:
         name, _, unit, meaning = lines[0]
         table.add_row(name, *[_number(value, unit) for _, value, _, _ in lines], meaning)
     _print(table)
+
+
+def print_comparison(found: DriveComparison) -> None:
+    """Print the driving metrics of each controller, and their differences from the first one."""
+    amount = f"{found.count} runs each: mean [95 % interval]" if found.count > 1 else "one run each"
+    table = _table(
+        f"{found.scenario}, {amount}",
+        "figure",
+        *found.runs,
+        *[f"{controller} - {found.first}" for controller in found.differences],
+    )
+    for key, metric in found.metrics.items():
+        means = [_mean(of_one[key], metric) if key in of_one else "-" for of_one in found.means.values()]
+        apart = [
+            _difference(of_one[key], metric.unit, metric.factor) for of_one in found.differences.values()
+        ]
+        table.add_row(metric.name, *means, *apart)
+    console = _wide_console()
+    console.print(table)
+    about = f"{_how_they_differ(found.count)}\n" if found.differences else ""
+    console.print(f"\n{about}", soft_wrap=True)
 
 
 def print_runs(
@@ -91,7 +116,7 @@ def print_table(table: ScoreTable) -> None:
         shown.add_column(head, justify="right")
     for row, cells, after in zip_longest(table.rows, rows, table.rows[1:]):
         shown.add_row(*cells, end_section=after is not None and after.part != row.part)
-    console = Console() if sys.stdout.isatty() else Console(width=60 + 36 * len(heads))
+    console = _wide_console()
     console.print(shown)
     console.print(f"\n{caption(table)}\n", soft_wrap=True)
 
@@ -127,13 +152,12 @@ def _print_beside(groups: Groups, who: str, figures: Sequence[Figure]) -> None:
         values = [_number(figure.of(whole), figure.unit) for whole in wholes]
         apart = [_difference(one.figures[figure.name], figure.unit) for one in compared]
         table.add_row(figure.name, *values, *apart)
-    console = Console(width=None if sys.stdout.isatty() else 30 + 30 * (len(wholes) + len(compared)))
+    console, pairs = _wide_console(), max(one.pairs for one in compared)
     console.print(table)
-    console.print(f"\n{_how_they_differ(compared)}{_by_what(groups)}\n", soft_wrap=True)
+    console.print(f"\n{_how_they_differ(pairs)}{_by_what(groups)}\n", soft_wrap=True)
 
 
-def _how_they_differ(compared: Sequence[Difference]) -> str:
-    pairs = max(one.pairs for one in compared)
+def _how_they_differ(pairs: int) -> str:
     if pairs == 0:
         return "No two runs have the same scenario and seed, so differences between trackers are unknown."
     text = "A difference is the mean over runs of the same scenario and seed"
@@ -151,13 +175,18 @@ def _by_what(groups: Groups) -> str:
     return f" Trackers are scored against different ground truth boxes: {'; '.join(references)}."
 
 
-def _difference(apart: PairedDifference, unit: str) -> str:
+def _difference(apart: PairedDifference, unit: str, factor: float = 1.0) -> str:
     interval = apart.interval
     if math.isnan(interval.mean):
         return "-"
-    mean, low, high = (f"{value:+.2f}" for value in (interval.mean, interval.low, interval.high))
+    mean, low, high = (f"{factor * value:+.2f}" for value in (interval.mean, interval.low, interval.high))
     known = f" [{low}, {high}], p = {apart.p:.2g}" if interval.is_known else ""
     return f"{mean} {unit}".rstrip() + known
+
+
+def _mean(interval: Interval, metric: Metric) -> str:
+    mean, low, high = (metric.factor * value for value in (interval.mean, interval.low, interval.high))
+    return _number(mean, metric.unit) + (f" [{low:.2f}, {high:.2f}]" if interval.is_known else "")
 
 
 def _single_person(scores: Scores) -> str:
@@ -202,3 +231,8 @@ def _print(table: Table) -> None:
 
 def _console() -> Console:
     return Console() if sys.stdout.isatty() else Console(width=120)
+
+
+def _wide_console() -> Console:
+    """Return a console that does not wrap the rows of a table with many columns in a file or pipe."""
+    return Console() if sys.stdout.isatty() else Console(width=_WIDE)
