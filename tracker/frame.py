@@ -22,6 +22,8 @@ DEPTH: Final = "depth"
 DEPTH_COLOUR: Final = "depth_colour"
 DEPTH_AMPLITUDE: Final = "depth_amplitude"
 
+FIRST_STEP_S: Final = 1 / 15
+"""Time step of a tracker's first frame."""
 
 # Motion beyond what the drive can do in a quarter of a second is a jump of the odometry.
 FARTHEST_TURN_RAD: Final = math.radians(40.0)
@@ -285,3 +287,16 @@ def joined(first: Odometry | None, then: Odometry | None) -> Odometry | None:
     if first is None or then is None:
         return None
     return Odometry.from_motion(first.motion.compose(then.motion))
+
+
+def time_step(time_s: float, last_s: float | None) -> float:
+    """Return the time since a tracker's last frame [s]; `FIRST_STEP_S` for the first one, without `last_s`.
+
+    Raises:
+        BadInput: the time does not increase.
+    """
+    if last_s is None:
+        return FIRST_STEP_S
+    if time_s <= last_s:
+        raise BadInput(f"time_s must go forward, got {time_s} after {last_s}")
+    return time_s - last_s

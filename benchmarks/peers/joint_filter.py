@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.peers.detectors import Boxes
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.frame import THERMAL, Frame, time_step
 from peopleboy.tracker.reproductions.contour.box_interaction import box_of, detector_factor, regions_of
 from peopleboy.tracker.reproductions.contour.measurement.likelihood import ContourModel, fitness, probability
 from peopleboy.tracker.reproductions.contour.particle_filter import (
@@ -39,7 +39,6 @@ from peopleboy.tracker.reproductions.contour.variants import THESIS
 # samples, it finds half as many people.
 _STEPS: Final = 4000
 _BURN_IN: Final = 0.2  # share of the steps that is discarded
-_FIRST_STEP_S: Final = 1 / 15
 
 
 class JointFilter:
@@ -55,7 +54,7 @@ class JointFilter:
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
         """Update all tracks, search for a new person, and return the boxes."""
-        dt_s = _FIRST_STEP_S if self._last_s is None else frame.time_s - self._last_s
+        dt_s = time_step(frame.time_s, self._last_s)
         self._last_s = frame.time_s
         if self._model is None:
             height, width = frame.grey(THERMAL).shape

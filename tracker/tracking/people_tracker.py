@@ -7,7 +7,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
-from peopleboy.tracker.frame import Frame, Odometry, check_frame, lacking
+from peopleboy.tracker.frame import Frame, Odometry, check_frame, lacking, time_step
 from peopleboy.tracker.track import Box, Track
 from peopleboy.tracker.tracking.config import PeopleTrackerConfig
 from peopleboy.tracker.tracking.sensor import (
@@ -22,7 +22,6 @@ from peopleboy.tracker.tracking.track_output import output_tracks
 from peopleboy.tracker.tracking.tracks import Tracks
 from peopleboy.tracker.tracking.viewpoint import Position, Viewpoint
 
-FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
 
 
@@ -89,7 +88,8 @@ class PeopleTracker:
         if self._last_s is None:
             self._sensors += self._mounted(frame.calibrations)
         self._check_images(frame)
-        dt_s = self._time_step(frame.time_s)
+        dt_s = time_step(frame.time_s, self._last_s)
+        self._last_s = frame.time_s
         self._tracks.origin_m = self._origin(frame)
         before = self._tracks.predict(dt_s, frame.odometry or _STANDING, self._config.motion)
         update = SensorUpdate(self._tracks, frame, dt_s, self._config)
@@ -115,17 +115,9 @@ class PeopleTracker:
         if is_first and frame.images and not any(one.cameras[0] in frame.images for one in self._sensors):
             raise BadInput(lacking(self._sensors[0].cameras[0], frame.images))
 
-    def _time_step(self, time_s: float) -> float:
-        last_s, self._last_s = self._last_s, time_s
-        if last_s is None:
-            return FIRST_STEP_S
-        if time_s <= last_s:
-            raise BadInput(f"time_s must go forward, got {time_s} after {last_s}")
-        return time_s - last_s
-
     def _time_since_image(self, camera: str, time_s: float) -> float:
         last_s, self._sensed_s[camera] = self._sensed_s.get(camera), time_s
-        return FIRST_STEP_S if last_s is None else time_s - last_s
+        return time_step(time_s, last_s)
 
     def _origin(self, frame: Frame) -> Position | None:
         """Return the position of the first calibrated camera."""

@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
 from peopleboy.tracker.camera_mount import Mount, mount_of
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, check_frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, check_frame, time_step
 from peopleboy.tracker.reproductions.contour.appearance.appearance_model import likelihood
 from peopleboy.tracker.reproductions.contour.box_interaction import (
     Regions,
@@ -63,7 +62,6 @@ from peopleboy.tracker.reproductions.contour.tracked_person import (
 )
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
-FIRST_STEP_S = 1 / 15
 COVERED_RESPONSE = 0.4  # response of contour points on people in front: neutral
 
 
@@ -124,7 +122,7 @@ class ContourTracker:
             BadInput: the time does not increase.
         """
         check_frame(frame)
-        dt_s = self._time_step(frame.time_s)
+        dt_s = time_step(frame.time_s, self._last_s)
         image = frame.grey(THERMAL)
         mount = self._mount_for(frame.calibrations.get(THERMAL), image.shape[0])
         model = self._model_for(image, dt_s)
@@ -142,13 +140,6 @@ class ContourTracker:
         shown = [person for person in known if not person.is_hidden or self._is_shown(person, view)]
         self._confirmed = (*shown, *newcomer)
         return self._tracks(frame)
-
-    def _time_step(self, time_s: float) -> float:
-        if self._last_s is None:
-            return FIRST_STEP_S
-        if time_s <= self._last_s:
-            raise BadInput(f"time_s must go forward, got {time_s} after {self._last_s}")
-        return time_s - self._last_s
 
     def _model_for(self, image: NDArray[np.uint8], dt_s: float) -> ContourModel:
         shape = (image.shape[0], image.shape[1])

@@ -6,11 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import THERMAL, Frame, check_frame
+from peopleboy.tracker.frame import THERMAL, Frame, check_frame, time_step
 from peopleboy.tracker.reproductions.contour.box_interaction import box_of, places_on_floor
 from peopleboy.tracker.reproductions.contour.contour_config import TrackerConfig
-from peopleboy.tracker.reproductions.contour.contour_tracker import FIRST_STEP_S
 from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation, ellipse_of
 from peopleboy.tracker.reproductions.contour.measurement.likelihood import ContourModel
 from peopleboy.tracker.reproductions.contour.particle_filter import Belief, FrameView, begin, step, view_frame
@@ -77,9 +75,7 @@ class SingleFilter:
         return (self._track(belief, frame),)
 
     def _view(self, frame: Frame) -> FrameView:
-        if self._last_s is not None and frame.time_s <= self._last_s:
-            raise BadInput(f"time_s must go forward, got {frame.time_s} after {self._last_s}")
-        dt_s = FIRST_STEP_S if self._last_s is None else frame.time_s - self._last_s
+        dt_s = time_step(frame.time_s, self._last_s)
         self._last_s = frame.time_s
         rows, columns = frame.grey(THERMAL).shape
         if self._model is None or self._model.shape != (rows, columns):
