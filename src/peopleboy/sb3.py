@@ -25,7 +25,7 @@ except ImportError as error:
 Indices = int | Iterable[int] | None
 
 
-class PeopleBoyVecEnv(VecEnv):  # type: ignore[misc]  # stable-baselines3 is optional, hence untyped
+class PeopleBoyVecEnv(VecEnv):
     """Many worlds in one process, in the form that stable-baselines3 asks for.
 
     Each info of a world has what `PeopleBoyEnv` gives, and `TimeLimit.truncated`; the last one of an episode
