@@ -29,11 +29,13 @@ FORMATS: Final = Registry(
         "yolo": Entry(f"{_HERE}.yolo:write_yolo", "boxes, for Ultralytics"),
         "yolo-pose": Entry(f"{_HERE}.yolo:write_yolo_pose", "boxes and keypoints, for Ultralytics"),
         "webdataset": Entry(
-            f"{_HERE}.hub_datasets:write_webdataset", "tar files of images and labels, for WebDataset"
+            f"{_HERE}.hubs.image_datasets:write_webdataset", "tar files of images and labels, for WebDataset"
         ),
         "huggingface": Entry(
-            f"{_HERE}.hub_datasets:write_huggingface", "parquet files of images and labels, for `datasets`"
+            f"{_HERE}.hubs.image_datasets:write_huggingface",
+            "parquet files of images and labels, for `datasets`",
         ),
+        "minari": Entry(f"{_HERE}.hubs.minari_episodes:write_minari", "episodes of environments, for Minari"),
         "viper": Entry(f"{_HERE}.viper:write_viper", "ViPER XML"),
         "mcap": Entry(f"{_HERE}.ros.ros_bag:write_mcap", "ROS 2 bags"),
         "mp4": Entry(f"{_HERE}.video:write_mp4", "films"),
@@ -41,7 +43,7 @@ FORMATS: Final = Registry(
 )
 """The formats by name; each is called with `(runs, folder, play)`, and further parameters are options."""
 
-SEQUENCES: Final = ("mot", "viper", "mcap", "mp4")
+SEQUENCES: Final = ("minari", "mot", "viper", "mcap", "mp4")
 """Formats of whole sequences, of which no frame can be left out."""
 
 

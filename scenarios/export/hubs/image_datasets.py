@@ -20,8 +20,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from peopleboy.scenarios.export.coco import annotation, image_entry
-from peopleboy.scenarios.export.croissant import CroissantFile, write_croissant
 from peopleboy.scenarios.export.formats import need
+from peopleboy.scenarios.export.hubs.croissant import CroissantFile, write_croissant
 from peopleboy.scenarios.export.labelled_frames import LabelledFrame, attributes_of, labelled_frames
 from peopleboy.scenarios.export.replay import Play, with_people
 from peopleboy.scenarios.export.splits import by_split
