@@ -28,9 +28,6 @@ class _FirstOne(event.Listener):
 
 @contextmanager
 def announced_compiling(console: Console) -> Iterator[None]:
-    """Print a line on a terminal if a kernel is compiled inside the block."""
-    if console.quiet or not console.is_terminal:
-        yield
-        return
+    """Print a line if a kernel is compiled inside the block."""
     with event.install_listener("numba:compile", _FirstOne(console)):
         yield

@@ -69,7 +69,8 @@ def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
 
     console, style = progress_console(), _STYLE.get()
     with ExitStack() as running:
-        running.enter_context(announced_compiling(console))
+        if console.is_terminal or style is ProgressStyle.PLAIN:
+            running.enter_context(announced_compiling(console))
         if style is ProgressStyle.AUTO and console.is_terminal:
             yield _bar(title, unit, console, running)
         elif style is ProgressStyle.HIDDEN:
@@ -118,12 +119,14 @@ class ProgressLines:
     def __init__(self, title: str, unit: str | None, *, is_short_shown: bool) -> None:
         self._title, self._unit = title, unit
         self._is_due_at_end = is_short_shown
-        self._start_s = self._last_s = time.monotonic()
+        self._last_s = time.monotonic()
+        self._first: tuple[int, float] | None = None  # units, time; before, kernels may have been compiled
         self._state: tuple[int, int, str] | None = None
 
     def show(self, finished: int, total: int, note: str = "") -> None:
         """Take the state, and print it if a line is due."""
         self._state = finished, total, note
+        self._first = self._first or (finished, time.monotonic())
         if time.monotonic() - self._last_s >= EVERY_S:
             self._print()
             self._is_due_at_end = True
@@ -134,17 +137,17 @@ class ProgressLines:
             self._print()
 
     def _print(self) -> None:
-        if self._state is None:
+        if self._state is None or self._first is None:
             return
-        finished, total, note = self._state
+        (finished, total, note), (first, first_s) = self._state, self._first
         self._state, self._last_s = None, time.monotonic()
-        spent_s = max(self._last_s - self._start_s, 1e-3)
+        rate = (finished - first) / max(self._last_s - first_s, 1e-3)
         parts = [f"{finished} of {total} {self._unit or ''}".rstrip()]
-        if self._unit:
-            parts.append(f"{finished / spent_s:.0f} {self._unit}/s")
+        if self._unit and rate > 0.0:
+            parts.append(f"{rate:.0f} {self._unit}/s")
         parts += [note] if note else []
-        if 0 < finished < total:
-            parts.append(f"{_duration(spent_s * (total - finished) / finished)} left")
+        if rate > 0.0 and finished < total:
+            parts.append(f"{_duration((total - finished) / rate)} left")
         click.echo(f"{self._title}: {', '.join(parts)}", err=True)
 
 

@@ -50,6 +50,19 @@ def test_short_work_prints_a_line_only_if_lines_are_asked_for(
     assert capsys.readouterr().err == "render: 50 of 50, 5 done\n"
 
 
+def test_the_first_unit_with_which_kernels_are_compiled_does_not_count_for_the_rate(
+    clock: Clock, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with progress_as(ProgressStyle.AUTO), shown("run", "frames") as show:
+        for second, frames in ((50, 1), (80, 301)):
+            clock.now_s = second
+            show(frames, 330)
+    assert capsys.readouterr().err.splitlines() == [
+        "run: 1 of 330 frames",
+        "run: 301 of 330 frames, 10 frames/s, 3 s left",
+    ]
+
+
 def test_hidden_progress_prints_nothing(clock: Clock, capsys: pytest.CaptureFixture[str]) -> None:
     work(clock, ProgressStyle.HIDDEN, 300)
     assert capsys.readouterr().err == ""
