@@ -210,6 +210,14 @@ def options_of(
     return decorate
 
 
+class SpeltChoice(click.Choice[str]):
+    """A choice whose values keep their spelling, such as FFmpeg's `gray16`, and may have the American one."""
+
+    def normalize_choice(self, choice: object, ctx: click.Context | None) -> str:
+        """Return a choice as it is spelt, and other words in the options' spelling."""
+        return str(choice) if choice in self.choices else super().normalize_choice(choice, ctx)
+
+
 def _option(setting: "Setting", meaning: str, *, is_required: bool) -> click.Parameter:
     if setting.is_positional:
         metavar = f"[{setting.field.upper()}]"
@@ -226,7 +234,7 @@ def _option(setting: "Setting", meaning: str, *, is_required: bool) -> click.Par
     choices = _choices(setting)
     return click.Option(
         [flag, setting.field],
-        type=click.Choice(choices) if choices else _type(setting),
+        type=SpeltChoice(choices) if choices else _type(setting),
         required=is_required,
         metavar=setting.metavar,
         multiple=_is_many(setting),
