@@ -88,6 +88,10 @@ def test_american_spellings_are_those_of_the_options(american: str, ours: str) -
     assert british(american) == ours
 
 
+def test_values_that_are_american_are_shown_as_they_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "'gray16be'" in refusal(capsys, "track", "-", "--size", "8x8", "--pixels", "gray8")
+
+
 def test_an_american_option_is_taken(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     order = ("run", "empty_room", "--out", tmp_path / "run", "--behavior", "stands")
     assert "'stands'" in refusal(capsys, *order)

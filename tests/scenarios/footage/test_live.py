@@ -92,7 +92,6 @@ def test_encoded_video_of_a_pipe_is_decoded(tmp_path):
         (("-", "--start", "1,2,3,4"), ("--start",)),
         (("-", "--truth", "clip"), ("--truth",)),
         (("-", "--json"), ("--json",)),
-        (("-", *RAW[:2], "--pixels", "gray8"), ("--pixels", "'gray16'")),
         (("7",), ("camera 7",)),
     ],
 )
