@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
+from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, paled, track_colour
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import colour_from_thermal, shown_to_people
 from peopleboy.sim.geometry.panorama import around_px
@@ -63,6 +63,9 @@ _DASH_PX = 8.0
 _EDGE: Rgb = (20, 20, 20)
 _UNTURNED = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 _DIM = 0.6  # of a tentative track
+_PLATE = 5  # divides the brightness below a label
+_TEXT = 0.6  # share of a track's colour in its label, the rest is white: strokes of a pixel look darker
+_LEAST_FONT = 0.5  # legible in a picture of half of a page's width
 _MOVES = (0, 1, 2, 3, -1, -2, 4, 5)  # rows by which a label is shifted to avoid others
 _SHORT = {Status.PARTLY_OCCLUDED: " partly", Status.TOTALLY_OCCLUDED: " hidden"}
 
@@ -206,14 +209,15 @@ def draw_truth(
     """Draw ground truth as thin dashed boxes with name and visible share; arguments as in `draw_tracks`."""
     canvas = picture.copy()
     taken = [] if plates is None else plates
-    for person in people:
-        if person.box is None:
-            continue
-        box = map_box(person.box, _UNTURNED if affine is None else affine)
-        if not _is_inside(box, canvas, scale):
-            continue
+    mapping = _UNTURNED if affine is None else affine
+    boxes = [(person, map_box(person.box, mapping)) for person in people if person.box is not None]
+    shown = [(person, box) for person, box in boxes if _is_inside(box, canvas, scale)]
+    for _, box in shown:
         for dash in _dashes(box_corners(box), _DASH_PX / scale):
             draw_line(canvas, dash, TRUTH, scale, thickness=1)
+    for plate in taken:  # lines would strike their labels through
+        _part(canvas, plate)[:] = _part(picture, plate)
+    for person, box in shown:
         text = f"{person.name} {person.visible_fraction:.0%}"
         _label(canvas, text, box, TRUTH, scale, taken, is_below=True)
     return canvas
@@ -307,11 +311,12 @@ def _label(
     A label that is moved away from its box gets a line to it.
     """
     # The font grows with the scale, but not beyond what suits the height of the picture.
-    size = max(min(0.2 * scale, canvas.shape[0] / 1200.0), 0.4)
-    (width, height), descent = cv2.getTextSize(text, _FONT, size, 1)
+    size = max(min(0.25 * scale, canvas.shape[0] / 960.0), _LEAST_FONT)
+    stroke = max(round(2.0 * size), 1)
+    (width, height), descent = cv2.getTextSize(text, _FONT, size, stroke)
     line = height + descent + 3
     left, top = box[0] * scale, box[1] * scale
-    bottom = (box[1] + box[3]) * scale + line if is_below else top - 4
+    bottom = (box[1] + box[3]) * scale + line if is_below else top - descent - 3.0  # clear of the box
     rows, columns = canvas.shape[:2]
     x = round(min(max(left, 2.0), max(columns - width - 2.0, 2.0)))
     places = []
@@ -322,10 +327,15 @@ def _label(
     plate = next((place for place in places if not any(_touch(place, other) for other in taken)), places[0])
     taken.append(plate)
     if plate != places[0]:
-        _lead(canvas, plate, (x, round(bottom - line if is_below else bottom + 4)), colour)
-    under = canvas[max(plate[1], 0) : plate[3], max(plate[0], 0) : plate[2]]
-    under[:] = under // 3
-    cv2.putText(canvas, text, (x, plate[3] - descent - 1), _FONT, size, colour, 1, cv2.LINE_AA)
+        _lead(canvas, plate, (x, round(bottom - line if is_below else top)), colour)
+    _part(canvas, plate)[:] //= _PLATE
+    shade = paled(colour, _TEXT)
+    cv2.putText(canvas, text, (x, plate[3] - descent - 1), _FONT, size, shade, stroke, cv2.LINE_AA)
+
+
+def _part(canvas: Picture, plate: Plate) -> Picture:
+    """Return the part of a picture below a plate, as a view."""
+    return canvas[max(plate[1], 0) : plate[3], max(plate[0], 0) : plate[2]]
 
 
 def _lead(canvas: Picture, plate: Plate, corner: tuple[int, int], colour: Rgb) -> None:

@@ -43,3 +43,13 @@ def faded(colour: Rgb, share: float) -> Rgb:
     """Mix a colour with black: 1 returns the colour, 0 black."""
     red, green, blue = colour
     return round(red * share), round(green * share), round(blue * share)
+
+
+def paled(colour: Rgb, share: float) -> Rgb:
+    """Mix a colour with white: 1 returns the colour, 0 white."""
+    red, green, blue = colour
+    return (
+        round(255 - (255 - red) * share),
+        round(255 - (255 - green) * share),
+        round(255 - (255 - blue) * share),
+    )
