@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -19,9 +19,13 @@ Array = NDArray[np.float64]
 
 Extent = NDArray[np.float64]  # (2, 3) [m]: lowest and highest x, y, z
 
+_REMEMBERED = (
+    1024  # fixtures: those of several places, as a place is built again for each try of a random world
+)
 _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 
 
+@lru_cache(maxsize=_REMEMBERED)
 def fixture_extent(fixture: Fixture) -> Extent:
     """Return the box around a fixture in the world frame: exact for boxes, and never too small.
 
@@ -29,7 +33,9 @@ def fixture_extent(fixture: Fixture) -> Extent:
         BadInput: a URDF or a mesh cannot be read.
     """
     world = [_moved(extent, fixture.position, fixture.orientation) for extent in shape_extents(fixture)]
-    return np.round(_around(np.concatenate(world)), 9)
+    extent = np.round(_around(np.concatenate(world)), 9)
+    extent.setflags(write=False)
+    return extent
 
 
 def shape_extents(fixture: Fixture) -> list[Extent]:

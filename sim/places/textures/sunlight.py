@@ -77,6 +77,8 @@ def _shade(lit: NDArray[np.bool_], points: Array, way: Array, blocking: Array) -
                     first = (blocking[k, 0, axis] - points[v, u, axis]) / way[axis]
                     second = (blocking[k, 1, axis] - points[v, u, axis]) / way[axis]
                     near, far = max(near, min(first, second)), min(far, max(first, second))
+                    if near >= far or far <= _LEAST_M:  # further axes only bring them closer
+                        break
                 lit[v, u] = near >= far or far <= _LEAST_M
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.poses import pose_matrices
@@ -11,6 +12,7 @@ from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.shapes.materials import Painting, Unrolling
 
 Array = NDArray[np.float64]
+Samples = NDArray[np.int64]
 
 # Clouds: smooth noise with structure at all scales, like stains, drafts and moisture.
 
@@ -28,14 +30,25 @@ class Clouds:
     def at(self, across: Array, up: Array, metres: float) -> Array:
         """Return interpolated noise (H, W) at points (1, W) and (H, 1) [m], with a blotch width [m]."""
         scale = _SIDE / (_COARSEST * metres)
-        left, right, a = _between(across[0] * scale)
-        low, high, b = _between(up[:, 0] * scale)
-        rows = self.square[low] + b[:, None] * (self.square[high] - self.square[low])
-        before = rows[:, left]
-        return np.asarray(before + a * (rows[:, right] - before))
+        return _interpolate(self.square, *_between(up[:, 0] * scale), *_between(across[0] * scale))
 
 
-def _between(at: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
+@njit(cache=True, nogil=True)
+def _interpolate(
+    square: Array, low: Samples, high: Samples, b: Array, left: Samples, right: Samples, a: Array
+) -> Array:
+    """Interpolate a square: (H, W) for samples and weights of rows (H,) and columns (W,)."""
+    found = np.empty((len(b), len(a)))
+    for v in range(len(b)):
+        below, above = square[low[v]], square[high[v]]
+        row = below + b[v] * (above - below)
+        for u in range(len(a)):
+            before = row[left[u]]
+            found[v, u] = before + a[u] * (row[right[u]] - before)
+    return found
+
+
+def _between(at: Array) -> tuple[Samples, Samples, Array]:
     """Return the samples (N,) before and after each position, and the interpolation weight."""
     whole = np.floor(at)
     before = whole.astype(np.int64) % _SIDE
