@@ -153,3 +153,56 @@ class PanoramaCalibration:
         bearing, down = self.bearing(pixels[:, 0]), self.depression(pixels[:, 1])
         level = np.cos(down)
         return np.stack([level * np.cos(bearing), level * np.sin(bearing), -np.sin(down)], axis=1)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScanCalibration:
+    """Calibration of a laser range finder, whose scan is an image of one row, from left to right.
+
+    Attributes:
+        beams: number of beams.
+        step_rad: angle between beams [rad].
+        position_m: origin of the beams in the robot's frame [m].
+        yaw_rad: direction of the middle of the fan, from the robot's front, positive to the left [rad].
+
+    Raises:
+        BadInput: a number is not finite, or there is no beam.
+    """
+
+    beams: int
+    step_rad: float
+    position_m: tuple[float, float, float]
+    yaw_rad: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse invalid values."""
+        numbers = (self.beams, self.step_rad, *self.position_m, self.yaw_rad)
+        if not all(map(math.isfinite, numbers)) or self.beams < 1 or self.step_rad <= 0.0:
+            raise BadInput(f"calibration: {self.beams} beams, {self.step_rad} rad apart, are invalid")
+
+    @property
+    def bearings(self) -> Floats:
+        """Directions (N,) of the beams from left to right in the robot's frame, left positive [rad]."""
+        right = (np.arange(self.beams) - (self.beams - 1) / 2.0) * self.step_rad
+        return np.asarray(self.yaw_rad - right, np.float64)
+
+    def points(self, range_m: Floats) -> Floats:
+        """Return the points (N, 2) of a scan with ranges (N,) [m], forward and left in the robot's frame."""
+        bearing = self.bearings
+        ahead = np.stack([np.cos(bearing), np.sin(bearing)], axis=1)
+        return np.asarray(self.position_m[:2] + range_m[:, None] * ahead, np.float64)
+
+    def project(self, points_m: Floats) -> Floats:
+        """Map points (N, 3) of the robot's frame to the beam and the row (N, 2), which may lie outside."""
+        x, y, z = (points_m - np.array(self.position_m)).T
+        off = self.yaw_rad - np.arctan2(y, x)
+        turns = off / math.tau
+        u = math.tau * (turns - np.rint(turns)) / self.step_rad + (self.beams - 1) / 2.0
+        return np.stack([u, -np.arctan2(z, np.hypot(x, y)) / self.step_rad], axis=1)
+
+    def rays(self, pixels: Floats) -> Floats:
+        """Return the unit directions (N, 3) of beams and rows (N, 2) in the robot's frame."""
+        bearing = self.yaw_rad - (pixels[:, 0] - (self.beams - 1) / 2.0) * self.step_rad
+        down = pixels[:, 1] * self.step_rad
+        level = np.cos(down)
+        return np.stack([level * np.cos(bearing), level * np.sin(bearing), -np.sin(down)], axis=1)

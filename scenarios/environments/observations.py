@@ -138,7 +138,8 @@ def observation_space(
     of the start pose, cosine and sine of the heading since the start, forward speed [m/s], turn rate [rad/s].
     With a goal, `goal` is (3,): its distance [m], cosine and sine of its bearing, by odometry.
     `pixels` adds the newest image of each camera in `shown` under its name, (H, W, 1) or (H, W, 3) uint8,
-    such as `thermal` and `colour`, or for a depth camera (H, W, 1) uint16 [mm]; `tracks` and `truth` add
+    such as `thermal` and `colour`, or for a depth camera (H, W, 1), for a laser range finder (1, N, 1) uint16
+    [mm]; `tracks` and `truth` add
     `tracks` (35,), five rows of `COLUMNS`.
     """
     sonar = robot.sonar

@@ -20,7 +20,7 @@ ORACLE: Final = "truth"
 """Name of the tracker that receives the ground-truth positions."""
 
 # Camera names that would clash with other folders, entities and arrays.
-_TAKEN: Final = ("truth", "tracks", "scene", "body", "sonar", "odometry")
+_TAKEN: Final = ("truth", "tracks", "scans", "scene", "body", "sonar", "odometry")
 _MOST_PIXELS: Final = 1 << 23  # limit of the trackers' integral images
 _MOST_PIXELS_IN_ALL = 2 * _MOST_PIXELS
 _MOST_CAMERAS = 32

@@ -27,9 +27,10 @@ from rerun.components import Colormap, FillMode
 
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
 from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
-from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
+from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig, LaserConfig
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Pinhole
+from peopleboy.sim.geometry.scan_plane import ScanPlane
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import UPRIGHT, ShapeKind
@@ -65,7 +66,7 @@ def camera_path(name: str) -> str:
 
 
 def points_path(camera: str) -> str:
-    """Return the entity of a depth camera's point cloud."""
+    """Return the entity of a depth camera's point cloud, or of a range finder's scan."""
     return f"world/points/{camera}"
 
 
@@ -93,7 +94,11 @@ def lay_out(
     cameras = {name: camera.camera for name, camera in config.robot.cameras.items()}
     thermal = _image_view(THERMAL, "Thermal: tracks with evidence, particles, truth", cameras.pop("thermal"))
     colour = _colour_view(cameras.pop("colour"), attends=attends)
-    further = [_further_view(name, camera, name in watched) for name, camera in cameras.items()]
+    further = [
+        _further_view(name, camera, name in watched)
+        for name, camera in cameras.items()
+        if not isinstance(camera, ScanPlane)  # whose points are in the world
+    ]
     events = rrb.TextLogView(
         origin=EVENTS, name="Events", columns=rrb.TextLogColumns(text_log_columns=["LogLevel", "Body"])
     )
@@ -236,7 +241,7 @@ class Still:
         for name, camera in config.robot.cameras.items():
             layers, reach_m = own.get(name, (ON_FURTHER, 0.8))
             self._log_camera(camera_path(name), camera, layers, reach_m)
-            if isinstance(camera, DepthConfig):
+            if isinstance(camera, DepthConfig | LaserConfig):
                 self._log(points_path(name), rr.Points3D.from_fields(radii=[_POINT_M]))
         self._log(PLACES, rr.Ellipsoids3D.from_fields(fill_mode=FillMode.MajorWireframe))
         self._log(TRAILS, rr.LineStrips3D.from_fields(radii=[0.02]))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.drawing.overlay import encode_jpeg, encode_png, people_parts, track_parts
+from peopleboy.scenarios.drawing.palette import person_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, describe_fully
 from peopleboy.scenarios.recording import marks
@@ -38,10 +39,10 @@ from peopleboy.scenarios.recording.layout import (
 from peopleboy.scenarios.recording.marks import Arrows, believed_arrows, true_arrows, world_arrows
 from peopleboy.scenarios.recording.rows import METRE_STEP, PIXEL_STEP, TURN_STEP, RecordingWriter, rounded
 from peopleboy.scenarios.recording.solids import NO_CAPSULES, body_capsules
-from peopleboy.sim.cameras.camera_config import DepthConfig
+from peopleboy.sim.cameras.camera_config import DepthConfig, LaserConfig
 from peopleboy.sim.cameras.depth import points_of
 from peopleboy.sim.cameras.kinds import colour_from_thermal, shown_to_people, with_boxes
-from peopleboy.sim.geometry.pinhole import Matrix, transform
+from peopleboy.sim.geometry.pinhole import Matrix, invert_pose, transform
 from peopleboy.sim.shapes.shapes import Vector
 from peopleboy.sim.truth.truth import ThingTruth
 from peopleboy.sim.world_config import WorldConfig
@@ -50,6 +51,7 @@ _FRAMES_SENT_TOGETHER = 15
 _JPEG_QUALITY = 45
 _POINTS = 10_000  # approximate number of points in the cloud of a depth image
 _NAME_HEIGHT = 1.0 / 15.0  # [image heights] of names above boxes
+_SCAN_COLOUR = (240, 228, 66)  # of the points of a scan that are not on people
 _GONE = 1e-4  # scale at which an absent object is drawn
 _GRAVE = ("contact", "lost", "fault starts")
 
@@ -124,6 +126,9 @@ class Recorder(RecordingWriter):
             if isinstance(config, DepthConfig):
                 self._log_depth(name, config, tick)
                 continue
+            if isinstance(config, LaserConfig):
+                self._log_scan(name, config, tick)
+                continue
             blob = self._encoded(shown_to_people(images, name, config))
             self.add(f"{camera_path(name)}/image", rr.EncodedImage, blob=[blob])
 
@@ -141,6 +146,17 @@ class Recorder(RecordingWriter):
         places, pixels = points_of(images[name], config.camera, every)
         world = transform(tick.truths[name].world_from_camera, places.astype(np.float64))
         colours = colour[pixels[:, 0], pixels[:, 1]]
+        self.add(points_path(name), rr.Points3D, positions=rounded(world, METRE_STEP), colors=colours)
+
+    def _log_scan(self, name: str, config: LaserConfig, tick: Tick) -> None:
+        """Log the points of a scan in the world; those on a person have the person's colour."""
+        truth, ranges, plane = tick.truths[name], tick.observation.images[name][0], config.camera
+        is_read = ranges > 0
+        flat = plane.calibration.points(ranges / 1000.0)[is_read]
+        points = np.column_stack([flat, np.full(len(flat), plane.position_m[2])])
+        world = transform(truth.world_from_camera @ invert_pose(plane.robot_from_camera), points)
+        people = truth.instance[0][is_read].tolist()
+        colours = [person_colour(one) if one else _SCAN_COLOUR for one in people]
         self.add(points_path(name), rr.Points3D, positions=rounded(world, METRE_STEP), colors=colours)
 
     def _log_tracks(self, tick: Tick) -> None:

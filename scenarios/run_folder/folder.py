@@ -34,18 +34,21 @@ from peopleboy.scenarios.run_folder.image_files import (
 from peopleboy.scenarios.run_folder.run_files import truth_files
 from peopleboy.scenarios.run_folder.run_tables import (
     ROBOT_TABLE,
+    SCANS_FOLDER,
     THINGS_TABLE,
     TRACKS_TABLE,
     Row,
     RunTables,
     recover_tables,
     robot_row,
+    scan_rows,
+    scan_table,
     thing_rows,
     track_rows,
     truth_rows,
     truth_table,
 )
-from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
+from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig, LaserConfig
 from peopleboy.sim.cameras.kinds import Stored, with_boxes
 from peopleboy.sim.truth.truth import Backgrounds
 from peopleboy.tracker.evaluation.mot_files import track_line, truth_line
@@ -69,6 +72,11 @@ def things_camera(cameras: Mapping[str, CameraConfig]) -> str:
 def depth_cameras(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
     """Return the names of the cameras that measure depth."""
     return tuple(name for name, config in cameras.items() if isinstance(config, DepthConfig))
+
+
+def range_finders(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
+    """Return the names of the laser range finders."""
+    return tuple(name for name, config in cameras.items() if isinstance(config, LaserConfig))
 
 
 class BackgroundFiles:
@@ -137,7 +145,10 @@ class RunFolder:
         self._results = {THERMAL: open_text(path / "tracks.txt")}
         self._events = open_text(path / "events.jsonl")
         hold(self._events)
-        self._tables = RunTables(path, self._truths)
+        self._scanners = range_finders(cameras)
+        if self._scanners:
+            (path / SCANS_FOLDER).mkdir()
+        self._tables = RunTables(path, self._truths, self._scanners)
         self._images = BackgroundQueue()
 
     def __enter__(self) -> "RunFolder":
@@ -222,6 +233,7 @@ class RunFolder:
         rows = {truth_table(name): truth_rows(tick, name) for name in self._truths if name in tick.truths}
         if tick.truth.things and self._things_camera in tick.truths:
             rows[THINGS_TABLE] = thing_rows(tick, self._things_camera)
+        rows |= {scan_table(name): scan_rows(tick, name) for name in self._scanners if name in tick.truths}
         return rows | {TRACKS_TABLE: track_rows(tick), ROBOT_TABLE: [robot_row(tick)]}
 
     def _write_lines(self, tick: Tick, events: Sequence[Mapping[str, Any]]) -> None:
@@ -262,7 +274,7 @@ def settle_run(folder: Path, about: Mapping[str, Any]) -> dict[str, Any]:
         for text in (folder / "truth").glob("*gt.txt")
     ]
     try:
-        frames = recover_tables(folder, cameras)
+        frames = recover_tables(folder, cameras, _scanners(folder))
         _trim_texts(folder, frames)
         for image in folder.glob("**/*.png"):
             if image.stem.isdecimal() and int(image.stem) > frames:
@@ -277,6 +289,14 @@ def settle_run(folder: Path, about: Mapping[str, Any]) -> dict[str, Any]:
     except (ValueError, TypeError, LookupError, AttributeError) as error:
         raise BadInput(f"{folder}: this run was killed, and its files were changed; run it again") from error
     return settled
+
+
+def _scanners(folder: Path) -> list[str]:
+    """Return the range finders of a run that was killed, from the cameras in its scenario.yaml."""
+    if not (folder / SCANS_FOLDER).is_dir():
+        return []
+    cameras = yaml.safe_load((folder / "scenario.yaml").read_text(encoding="utf-8"))["robot"]["cameras"]
+    return [name for name, given in cameras.items() if given["kind"] == LaserConfig.kind]
 
 
 def _whole_lines(path: Path) -> Iterator[str]:

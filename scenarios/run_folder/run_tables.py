@@ -17,6 +17,8 @@ from pyarrow.fs import LocalFileSystem
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.loop.loop import BlindTick, Tick
 from peopleboy.scenarios.run_folder.atomic_output import PART
+from peopleboy.scenarios.run_folder.image_files import millimetres
+from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation, Ellipse
 from peopleboy.tracker.reproductions.contour.variants import VARIANTS
@@ -229,8 +231,29 @@ _ROBOT: Final[TableColumns] = {
     "contacts": TableColumn(pa.list_(STRING), lambda tick: list(tick.truth.contacts)),
 }
 
+
+class _Scan(NamedTuple):
+    """A scan of a range finder (1, N) [mm], and the ground truth of the same instant."""
+
+    ranges: NDArray[np.uint16]
+    truth: Truth
+
+
+_SCAN: Final[TableColumns] = {
+    "range_m": TableColumn(pa.list_(FLOAT), lambda scan: _metres(scan.ranges[0])),
+    "true_range_m": TableColumn(pa.list_(FLOAT), lambda scan: _metres(millimetres(scan.truth.depth_m)[0])),
+    "person": TableColumn(pa.list_(INT), lambda scan: scan.truth.instance[0].tolist()),
+}
+
+
+def _metres(ranges: NDArray[np.uint16]) -> list[float | None]:
+    """Return ranges in metres; None for no reading."""
+    return [one / 1000.0 if one else None for one in ranges.tolist()]
+
+
 TRUTH, TRACKS = schema_of("truth", _PERSON), schema_of("tracks", _TRACK)
 ROBOT, THINGS = schema_of("robot", _ROBOT), schema_of("things", _THING)
+SCANS: Final = schema_of("scans", _SCAN)
 
 MAY_BE_EMPTY = frozenset(
     name for columns in (_PERSON, _TRACK) for name, column in columns.items() if column.may_be_empty
@@ -249,6 +272,12 @@ def truth_rows(tick: Tick, camera: str = "thermal") -> list[Row]:
 def thing_rows(tick: Tick, camera: str) -> list[Row]:
     """Return the rows of the objects table for one tick, from a camera's ground truth."""
     return [row_of(_THING, tick.frame, tick.truth.time_s, one) for one in tick.truths[camera].things]
+
+
+def scan_rows(tick: Tick, camera: str) -> list[Row]:
+    """Return the row of a range finder's scan at one tick, with the person that each beam hits."""
+    scan = _Scan(tick.observation.images[camera], tick.truths[camera])
+    return [row_of(_SCAN, tick.frame, tick.truth.time_s, scan)]
 
 
 def is_in_image(people: pa.Table) -> NDArray[np.bool_]:
@@ -351,10 +380,11 @@ class RunTables:
     Args:
         folder: folder of the run.
         cameras: cameras with ground truth.
+        scanners: range finders.
     """
 
-    def __init__(self, folder: Path, cameras: Iterable[str]) -> None:
-        self._tables = _table_files(folder, cameras)
+    def __init__(self, folder: Path, cameras: Iterable[str], scanners: Iterable[str] = ()) -> None:
+        self._tables = _table_files(folder, cameras, scanners)
         self._path = folder / _LOG
         self._log = self._path.open("wb")
         self._pack = msgpack.Packer(default=_plain).pack
@@ -373,7 +403,7 @@ class RunTables:
             self._path.unlink()
 
 
-def recover_tables(folder: Path, cameras: Iterable[str]) -> int:
+def recover_tables(folder: Path, cameras: Iterable[str], scanners: Iterable[str]) -> int:
     """Convert the log of a run whose process was killed, if there is one; return the number of frames.
 
     Raises:
@@ -383,7 +413,7 @@ def recover_tables(folder: Path, cameras: Iterable[str]) -> int:
     log, robot = folder / _LOG, folder / ROBOT_TABLE
     if not log.is_file():
         return pq.read_metadata(robot.absolute(), filesystem=LOCAL).num_rows if robot.is_file() else 0
-    tables, frames = _table_files(folder, cameras), 0
+    tables, frames = _table_files(folder, cameras, scanners), 0
     with log.open("rb") as file:
         for rows in msgpack.Unpacker(file):  # ends before a record that is incomplete
             _add(tables, rows)
@@ -396,6 +426,12 @@ def recover_tables(folder: Path, cameras: Iterable[str]) -> int:
 ROBOT_TABLE: Final = "robot.parquet"
 TRACKS_TABLE: Final = "tracks.parquet"
 THINGS_TABLE: Final = "truth/things.parquet"
+SCANS_FOLDER: Final = "scans"
+
+
+def scan_table(camera: str) -> str:
+    """Return the path of the table of a range finder's scans in the folder of a run."""
+    return f"{SCANS_FOLDER}/{camera}.parquet"
 
 
 def truth_table(camera: str) -> str:
@@ -403,9 +439,10 @@ def truth_table(camera: str) -> str:
     return "truth.parquet" if camera == THERMAL else f"truth/{camera}.parquet"
 
 
-def _table_files(folder: Path, cameras: Iterable[str]) -> dict[str, TableFile]:
+def _table_files(folder: Path, cameras: Iterable[str], scanners: Iterable[str]) -> dict[str, TableFile]:
     schemas = {ROBOT_TABLE: ROBOT, TRACKS_TABLE: TRACKS, THINGS_TABLE: THINGS}
     schemas |= {truth_table(camera): TRUTH for camera in cameras}
+    schemas |= {scan_table(camera): SCANS for camera in scanners}
     return {name: TableFile(folder / name, schema) for name, schema in schemas.items()}
 
 

@@ -14,9 +14,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.batch.drive import JoinedWorlds
 from peopleboy.sim.batch.image_kernels import Array, Poses, join_scenes
 from peopleboy.sim.batch.render_stages import Images, has_stage, make_stage
-from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.kinds import image_names, kind_of, name_images
-from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.observation import OnDemand
 from peopleboy.sim.physics.kinematic import turn_wheels
 from peopleboy.sim.shapes.shape_table import Numbers
@@ -227,7 +226,7 @@ class BatchCameras:
         for name, config in self._cameras.items():
             rows = [row for row, names in enumerate(due) if name in names]
             if rows:
-                assert isinstance(config.camera, Pinhole)
+                assert isinstance(config, ThermalConfig | ColourConfig)
                 poses = Poses(
                     part=part,
                     hidden=hidden if kind_of(config).senses_heat else hidden | self._is_clear,

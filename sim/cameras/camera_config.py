@@ -12,6 +12,7 @@ from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.settings import Share
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Pinhole
+from peopleboy.sim.geometry.scan_plane import ScanPlane
 
 # The colour camera sits 6 cm to the left of the thermal one and sees an angle narrower by 1.2 (T eq. 6.1).
 COLOUR_BASELINE_M = 0.06
@@ -61,7 +62,6 @@ class CameraConfig:
             description="frame rate: 1, 3, 5 or 15. `thermal` and `colour` always have the default, 15",
         ),
     ] = None
-    exposure_s: Exposure = 0.0
 
     @property
     def remembers(self) -> bool:
@@ -408,6 +408,46 @@ class DepthConfig(LightConfig):
         """Return the camera with the noise of depth and colour multiplied by a factor."""
         brighter = LightConfig.noisier(self, factor)
         return replace(brighter, scale=factor * self.scale)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LaserConfig(CameraConfig):
+    """A laser range finder, whose scan is an image of one row.
+
+    The light passes through glass.
+
+    Raises:
+        BadInput: the range is empty.
+    """
+
+    kind: ClassVar[str] = "laser"
+
+    camera: ScanPlane = field(default_factory=ScanPlane)
+    nearest_m: Annotated[float, Field(ge=0.0, le=FARTHEST_M, description="minimum measurable range")] = 0.05
+    farthest_m: Annotated[float, Field(gt=0.0, le=FARTHEST_M, description="maximum measurable range")] = 10.0
+    # SICK LMS 200 up to 8 m: 5 mm. Small scanners have two to three times as much.
+    noise_m: Annotated[float, Field(ge=0.0, le=1.0, description="standard deviation of a range")] = 0.01
+
+    def __post_init__(self) -> None:
+        """Refuse an empty range."""
+        if not 0.0 <= self.nearest_m < self.farthest_m <= FARTHEST_M:
+            raise BadInput(
+                f"{self.farthest_m} must be more than nearest_m, {self.nearest_m}, and at most {FARTHEST_M}",
+                key=("farthest_m",),
+            )
+
+    @property
+    def is_noisy(self) -> bool:
+        """Whether each scan has new noise."""
+        return self.noise_m > 0.0
+
+    def resized(self, width: int, height: int) -> Self:  # noqa: ARG002
+        """Return the range finder as it is, since its beams do not depend on the size of images."""
+        return self
+
+    def noisier(self, factor: float) -> Self:
+        """Return the range finder with its noise multiplied by a factor."""
+        return replace(self, noise_m=factor * self.noise_m)
 
 
 def calibrations_of(cameras: Mapping[str, CameraConfig]) -> Mapping[str, Calibration]:

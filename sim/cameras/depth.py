@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.camera_config import DEPTH_BASELINE_M, DepthConfig
+from peopleboy.sim.cameras.camera_config import DEPTH_BASELINE_M, DepthConfig, LaserConfig
 from peopleboy.sim.cameras.imaging.camera_view import CameraView, MaterialTable
 from peopleboy.sim.cameras.imaging.noise import gaussian, skip_gaussian, skip_smooth_gaussian, smooth_gaussian
 from peopleboy.sim.cameras.imaging.surfaces import (
@@ -33,7 +33,7 @@ Millimetres = NDArray[np.uint16]
 _BRIGHT_M, _DARK_M, _DARK = 1.0, 12.0, 50  # [m] brightest and darkest depth, and the latter's brightness
 
 
-def to_millimetres(depth_m: Metres, config: DepthConfig) -> Millimetres:
+def to_millimetres(depth_m: Metres, config: DepthConfig | LaserConfig) -> Millimetres:
     """Encode (H, W) depths [m] in millimetres; 0 outside the sensor's range, and for NaN and infinity."""
     is_read = (depth_m >= config.nearest_m) & (depth_m <= config.farthest_m)
     return np.where(is_read, np.rint(1000.0 * np.where(is_read, depth_m, 0.0)), 0.0).astype(np.uint16)

@@ -16,15 +16,18 @@ from peopleboy.sim.cameras.camera_config import (
     CameraConfig,
     ColourConfig,
     DepthConfig,
+    LaserConfig,
     PanoramaConfig,
     ThermalConfig,
 )
 from peopleboy.sim.cameras.depth import show_amplitude, show_depth
 from peopleboy.sim.cameras.imaging.electronics import show_scene
+from peopleboy.sim.cameras.laser import show_scan
 from peopleboy.sim.cameras.sensors import (
     ColourSensor,
     DepthSensor,
     Image,
+    LaserSensor,
     PanoramaSensor,
     Sensor,
     ThermalSensor,
@@ -34,6 +37,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transfo
 from peopleboy.sim.observation import OnDemand
 from peopleboy.sim.rendering.panoramic_renderer import PanoramicRenderer
 from peopleboy.sim.rendering.renderer import PINHOLE_RENDERER, Renderer
+from peopleboy.sim.rendering.scan_renderer import ScanRenderer
 
 # Real depth cameras, by name.
 
@@ -232,6 +236,22 @@ KINDS: Final[dict[str, CameraKind]] = {
         more_layers=_beside_depth,
         dtype=np.uint16,
         unit="mm",
+    ),
+    "laser": CameraKind(
+        config=LaserConfig,
+        what="laser range finder, which scans a plane near the floor",
+        sensor=LaserSensor,
+        renderer=ScanRenderer(),
+        layers=(
+            Layer(
+                what="16-bit, one row: range of each beam in millimetres from left to right, 0 for no "
+                "reading",
+                show=show_scan,
+            ),
+        ),
+        dtype=np.uint16,
+        unit="mm",
+        has_boxes=False,
     ),
 }
 

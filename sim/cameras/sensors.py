@@ -7,7 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.random_streams import stream
-from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, PanoramaConfig, ThermalConfig
+from peopleboy.sim.cameras.camera_config import (
+    ColourConfig,
+    DepthConfig,
+    LaserConfig,
+    PanoramaConfig,
+    ThermalConfig,
+)
 from peopleboy.sim.cameras.colour import colour_image, expose
 from peopleboy.sim.cameras.depth import (
     add_offsets,
@@ -22,6 +28,7 @@ from peopleboy.sim.cameras.depth import (
 from peopleboy.sim.cameras.imaging.camera_view import CameraView
 from peopleboy.sim.cameras.imaging.electronics import Gain, compress, sharpen
 from peopleboy.sim.cameras.imaging.noise import Drift, random_words, skip_gaussian
+from peopleboy.sim.cameras.laser import measure_ranges
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.thermal import detect, make_detector, surface_image
 
@@ -179,3 +186,20 @@ class DepthSensor:
         else:
             depth = time_of_flight(fine, config, self._noise)
         return depth, amplitude_of(fine, config, self._amplitude_noise) if config.amplitude else None
+
+
+class LaserSensor:
+    """Laser range finder: ranges in millimetres."""
+
+    def __init__(self, config: LaserConfig, name: str, seed: int) -> None:
+        self._config = config
+        self._noise = stream(seed, f"{name}.noise")
+
+    def take(self, seen: CameraView) -> tuple[Image, ...]:
+        """Take the scan (1, N) uint16 of an instant."""
+        return (measure_ranges(seen.view.depth, self._config, self._noise),)
+
+    def skip(self) -> None:
+        """Skip the noise of a scan."""
+        if self._config.is_noisy:
+            skip_gaussian((1, self._config.camera.width), self._noise)

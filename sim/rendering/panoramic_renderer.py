@@ -31,13 +31,13 @@ class PanoramicRenderer(Renderer):
 
     def view(self, scene: Scene, camera: Panorama, world_from_camera: Matrix) -> View:
         """Render a camera's view of a scene."""
-        drawing, table = make_drawing(camera), scene.table
+        drawing, table = make_drawing(camera.width, camera.height), scene.table
         shape = (camera.height, camera.width)
         part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)
         normal, shading = np.empty((*shape, 3), np.float32), np.empty((len(table.surface_part), 7))
         draw_ring(
             table, invert_pose(world_from_camera) @ scene.world_from_part, scene.hidden,
-            person_bits(scene.person_of_part), ring_of(camera), shading, drawing,
+            person_bits(scene.person_of_part), ring_of(camera), 0, shading, drawing,
             np.ascontiguousarray(world_from_camera[:3, :3]), part, depth, normal,
         )  # fmt: skip
         depth *= _horizontal(camera)[:, None]

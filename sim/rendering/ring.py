@@ -12,6 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.sim.geometry.scan_plane import ScanPlane
 from peopleboy.sim.geometry.vectors import compose, map_corner, map_point
 from peopleboy.sim.rendering.raycast import draw_face, draw_shape, quick_bounds
 from peopleboy.sim.rendering.render_canvas import Brush, Canvas, Lens, pixels, shade
@@ -73,22 +74,35 @@ class Drawing(NamedTuple):
 @lru_cache(maxsize=16)
 def ring_of(camera: Panorama) -> Ring:
     """Return the cameras of a panorama's columns."""
+    lens = Lens(camera.focal_px, camera.height - 0.5, 0.0, camera.height, 1)
     right = -camera.bearing(np.arange(camera.width))
-    sin, cos, none = np.sin(right), np.cos(right), np.zeros(camera.width)
-    low_sin, low_cos = math.sin(camera.mirror.axis_rad), math.cos(camera.mirror.axis_rad)
-    poses = np.empty((camera.width, 3, 4))
+    return _ring_towards(right, lens, camera.mirror.axis_rad, camera.mirror.ring_radius_m)
+
+
+@lru_cache(maxsize=16)
+def beams_of(plane: ScanPlane) -> Ring:
+    """Return the beams of a whole turn, as cameras of one pixel; column 0 points backwards."""
+    right = (np.arange(plane.beams_per_turn) + 0.5) * plane.step_rad - math.pi
+    return _ring_towards(np.asarray(right, np.float64), Lens(1.0 / plane.step_rad, 0.0, 0.0, 1, 1), 0.0, 0.0)
+
+
+def _ring_towards(right: Array, lens: Lens, axis_rad: float, radius_m: float) -> Ring:
+    """Return cameras in directions (W,) to the right [rad], on a ring, with axes below the horizon."""
+    sin, cos, none = np.sin(right), np.cos(right), np.zeros(len(right))
+    low_sin, low_cos = math.sin(axis_rad), math.cos(axis_rad)
+    poses = np.empty((len(right), 3, 4))
     poses[:, 0, :3] = np.stack([-low_sin * sin, none + low_cos, -low_sin * cos], axis=1)
     poses[:, 1, :3] = np.stack([-cos, none, sin], axis=1)
     poses[:, 2, :3] = np.stack([low_cos * sin, none + low_sin, low_cos * cos], axis=1)
-    origins = camera.mirror.ring_radius_m * np.stack([sin, none, cos], axis=1)
+    origins = radius_m * np.stack([sin, none, cos], axis=1)
     poses[:, :, 3] = -np.einsum("wij,wj->wi", poses[:, :, :3], origins)
     poses.setflags(write=False)
-    return Ring(Lens(camera.focal_px, camera.height - 0.5, 0.0, camera.height, 1), poses)
+    return Ring(lens, poses)
 
 
-def make_drawing(camera: Panorama) -> Drawing:
+def make_drawing(width: int, height: int) -> Drawing:
     """Return empty columns."""
-    shape = (camera.width, camera.height)
+    shape = (width, height)
     return Drawing(np.zeros(shape), np.empty(shape, np.int32), np.zeros(shape, np.uint64))
 
 
@@ -161,6 +175,7 @@ def draw_ring(
     skip: NDArray[np.bool_],
     bits: NDArray[np.uint64],
     ring: Ring,
+    first: int,
     shading: Array,
     drawing: Drawing,
     rotation: Array,
@@ -175,9 +190,10 @@ def draw_ring(
         ring_from_part: (P, 4, 4).
         skip: (P,) parts that are not drawn.
         bits: (P,) bits that a part's silhouette sets in the cover.
-        ring: the columns' cameras.
+        ring: the cameras of all columns around.
+        first: number of the first column that is drawn.
         shading: (M, 7) buffer, as in `Canvas`.
-        drawing: buffers to draw on.
+        drawing: buffers to draw on, one for each drawn column.
         rotation: (3, 3) world from the panorama's optical frame.
         part: (H, W) output, part numbers, -1 for none.
         depth: (H, W) output, depths [m] along the axis of the column's camera, inf for none.
@@ -185,14 +201,14 @@ def draw_ring(
     """
     pieces, column = _before(table, ring_from_part, skip, ring), np.empty((1, len(normal), 3), np.float32)
     for u in range(len(drawing.nearness)):
-        canvas = _canvas(drawing, u, shading)
-        _draw_column(table, bits, ring, u, pieces, canvas)
+        canvas, around = _canvas(drawing, u, shading), first + u
+        _draw_column(table, bits, ring, around, pieces, canvas)
         turned = np.empty((3, 3))
         for i in range(3):
             for j in range(3):
                 turned[i, j] = 0.0
                 for k in range(3):
-                    turned[i, j] += rotation[i, k] * ring.column_from_ring[u, j, k]
+                    turned[i, j] += rotation[i, k] * ring.column_from_ring[around, j, k]
         row = slice(u, u + 1)
         shade(table.surface_part, ring.lens, canvas, turned, part.T[row], depth.T[row], column)
         for v in range(normal.shape[0]):

@@ -1,4 +1,4 @@
-"""ROS 2 messages of cameras: images, points and calibrations, named as camera drivers name them."""
+"""ROS 2 messages of cameras: images, points, scans and calibrations, named as drivers name them."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
 from peopleboy.scenarios.export.ros.message_types import Content, Message, header, optical
-from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig, ThermalConfig
+from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig, LaserConfig, ThermalConfig
 from peopleboy.sim.cameras.depth import points_of
 from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.world_config import CONTROL_HZ
 
 JPEG_QUALITY: Final = 90
 _POINT_EVERY = 4
@@ -28,6 +29,9 @@ def image_messages(
         head = header(optical(name), time_ns)
         if isinstance(config, DepthConfig):
             yield from _depth_images(head, name, config, images)
+        elif isinstance(config, LaserConfig):
+            scan = _scan(header(name, time_ns), config, images[name][0])
+            yield f"/{name}/scan", "sensor_msgs/LaserScan", scan
         else:
             yield _image(head, f"/{name}/image_raw", images[name])
         if isinstance(config, ThermalConfig):  # without loss, in K / 100
@@ -63,6 +67,18 @@ def _depth_images(
         red, green, blue = colour[pixels[:, 0], pixels[:, 1]].T.astype(np.uint32)
         columns["rgb"] = (red << 16 | green << 8 | blue).view(np.float32)
     yield f"/{camera}/points", "sensor_msgs/PointCloud2", points_message(head, columns)
+
+
+def _scan(head: Content, config: LaserConfig, ranges: NDArray[np.uint16]) -> Content:
+    """Return a scan, whose beams turn to the left in ROS; infinity for no reading, as in REP 117."""
+    plane, metres = config.camera, ranges[::-1] / np.float32(1000.0)
+    half_rad = (plane.width - 1) / 2.0 * plane.step_rad
+    return {
+        "header": head, "angle_min": -half_rad, "angle_max": half_rad, "angle_increment": plane.step_rad,
+        "time_increment": 0.0, "scan_time": 1.0 / (config.rate_hz or CONTROL_HZ),
+        "range_min": config.nearest_m, "range_max": config.farthest_m,
+        "ranges": np.where(metres > 0.0, metres, np.float32(np.inf)), "intensities": np.zeros(0, np.float32),
+    }  # fmt: skip
 
 
 def _image_of_16_bits(head: Content, image: NDArray[np.uint16]) -> Content:

@@ -29,6 +29,7 @@ from peopleboy.scenarios.export.ros.message_types import (
     vector,
 )
 from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.sim.geometry.scan_plane import ScanPlane
 from peopleboy.sim.physics.urdf import read_links
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M, URDF, WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
@@ -88,6 +89,12 @@ class RobotMessages:
         frames = [
             _frame(base, optical(name), camera.camera.robot_from_camera)
             for name, camera in self._robot.cameras.items()
+            if not isinstance(camera.camera, ScanPlane)
+        ]
+        frames += [  # a scan is in a frame with x forward and z up, as in REP 103
+            transform_between(base, name, plane.position_m, heading_quaternion(plane.yaw_rad))
+            for name, camera in self._robot.cameras.items()
+            if isinstance(plane := camera.camera, ScanPlane)
         ]
         frames += [
             transform_between(base, _sonar(k), (x, y, height_m), heading_quaternion(SONAR_ANGLE_RAD[k]))

@@ -169,11 +169,11 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "camera without a kind": (
         lambda d: d["robot"].update(cameras={"rear": {"yaw_deg": 180.0}}),
-        ("robot.cameras.rear: missing key 'kind'; choose from colour, depth, panorama, thermal",),
+        ("robot.cameras.rear: missing key 'kind'; choose from colour, depth, laser, panorama, thermal",),
     ),
     "camera without a kind whose name is one": (
         lambda d: d["robot"].update(cameras={"thermal": {"pitch_deg": -6.0}}),
-        ("robot.cameras.thermal: missing key 'kind'; choose from colour, depth, panorama, thermal",),
+        ("robot.cameras.thermal: missing key 'kind'; choose from colour, depth, laser, panorama, thermal",),
     ),
     "camera that is called as its kind": (
         lambda d: d["robot"].update(cameras={"colour": {"kind": "colour", "pich_deg": -6.0}}),
