@@ -132,15 +132,15 @@ def export(
     `images` contains, for each image, the person and body part at every pixel, and true depth. `yolo`
     contains boxes for Ultralytics, and `yolo-pose` adds keypoints. `webdataset` contains tar files, and
     `huggingface` parquet files for the library `datasets`, which it needs (extra `hub`); both with images,
-    masks and labels of one camera, and a Croissant file. `minari` contains saved episodes of
-    environments, for the library Minari, which it needs (extra `hub`). `viper` is ViPER XML. `mcap` is a ROS
-    2 bag and needs the package rosbags. `mp4` contains videos and needs the package av.
+    masks and labels of one camera, and a Croissant file. `minari` and `lerobot` contain saved episodes of
+    environments, for the libraries Minari, which it needs (extra `hub`), and LeRobot. `viper` is ViPER XML.
+    `mcap` is a ROS 2 bag and needs the package rosbags. `mp4` contains videos and needs the package av.
 
     `coco`, `images` and `mcap` contain all cameras. Images and masks that the run has not written are
     rendered again, and are bit-identical to those of the run.
 
     Options that choose frames, such as --every, apply to formats of images, not to those of sequences
-    (`minari`, `mot`, `viper`, `mcap`, `mp4`).
+    (`minari`, `lerobot`, `mot`, `viper`, `mcap`, `mp4`).
     """
     from peopleboy.scenarios.export.export_runs import export as write
     from peopleboy.scenarios.export.export_runs import notes_on

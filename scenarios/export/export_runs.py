@@ -45,8 +45,8 @@ class ExportOptions:
     camera: Annotated[
         str | None,
         Field(
-            description="Camera to export with mot, yolo, webdataset, huggingface, minari, viper and mp4.  "
-            "[default: thermal; for mp4, thermal and colour; for minari, none]"
+            description="Camera to export with mot, yolo, webdataset, huggingface, minari, lerobot, viper "
+            "and mp4.  [default: thermal; for mp4, thermal and colour; for minari and lerobot, none]"
         ),
         Metavar("NAME"),
     ] = None

@@ -36,6 +36,9 @@ FORMATS: Final = Registry(
             "parquet files of images and labels, for `datasets`",
         ),
         "minari": Entry(f"{_HERE}.hubs.minari_episodes:write_minari", "episodes of environments, for Minari"),
+        "lerobot": Entry(
+            f"{_HERE}.hubs.lerobot_episodes:write_lerobot", "episodes of environments, for LeRobot"
+        ),
         "viper": Entry(f"{_HERE}.viper:write_viper", "ViPER XML"),
         "mcap": Entry(f"{_HERE}.ros.ros_bag:write_mcap", "ROS 2 bags"),
         "mp4": Entry(f"{_HERE}.video:write_mp4", "films"),
@@ -43,7 +46,7 @@ FORMATS: Final = Registry(
 )
 """The formats by name; each is called with `(runs, folder, play)`, and further parameters are options."""
 
-SEQUENCES: Final = ("minari", "mot", "viper", "mcap", "mp4")
+SEQUENCES: Final = ("minari", "lerobot", "mot", "viper", "mcap", "mp4")
 """Formats of whole sequences, of which no frame can be left out."""
 
 
