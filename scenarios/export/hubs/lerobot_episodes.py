@@ -47,6 +47,7 @@ _KINDS: Final = tuple(f"q{round(100 * share):02d}" for share in _QUANTILES)
 _IMAGES: Final = "observation.images."
 _GOAL: Final = ("goal_distance_m", "goal_cos", "goal_sin")
 _ODOMETRY: Final = ("x_m", "y_m", "heading_cos", "heading_sin", "linear_m_s", "angular_rad_s")
+_CHUNK, _FILE = "data/chunk_index", "data/file_index"
 _INDICES: Final = ("frame_index", "episode_index", "index", "task_index")
 
 Values = Mapping[str, NDArray[Any]]  # (T, ...) by feature
@@ -76,34 +77,43 @@ def write_lerobot(runs: Sequence[FinishedRun], folder: Path, play: Play, camera:
         steps, task = read_steps(run, play, camera), _task(run)
         values = _values(steps, run, camera) | _indices(steps, number, start, tasks.index(task))
         features = features or {name: _feature(name, array, run) for name, array in values.items()}
-        chunk, file = divmod(number, _FILES_PER_CHUNK)
-        _write(folder / _DATA.format(chunk_index=chunk, file_index=file), _table(values))
         for name, array in values.items():
             summaries.setdefault(name, []).append(_summary(array))
-        end = start + len(steps.rewards)
+        episode = _episode(number, start, len(steps.rewards), task)
+        _write(folder / _DATA.format(chunk_index=episode[_CHUNK], file_index=episode[_FILE]), _table(values))
+        stats = _statistics({name: of[-1:] for name, of in summaries.items()}, len(steps.rewards))
         episodes.append(
-            {"episode_index": number, "tasks": [task], "length": end - start}
-            | {"data/chunk_index": chunk, "data/file_index": file}
-            | {"dataset_from_index": start, "dataset_to_index": end}
-            | _flat({name: _statistics(name, of[-1:], end - start) for name, of in summaries.items()})
-            | {"meta/episodes/chunk_index": 0, "meta/episodes/file_index": 0}
+            episode
+            | {f"stats/{name}/{kind}": value for name, of in stats.items() for kind, value in of.items()}
         )
-        start = end
+        start += len(steps.rewards)
     _write(folder / "meta/episodes/chunk-000/file-000.parquet", pa.Table.from_pylist(episodes))
     _write(folder / "meta/tasks.parquet", _task_table(tasks))
-    _write_json(
-        folder / "meta/stats.json", {name: _statistics(name, of, start) for name, of in summaries.items()}
-    )
+    _write_json(folder / "meta/stats.json", _statistics(summaries, start))
     _write_json(folder / "meta/info.json", _info(runs, features, start, len(tasks)))
 
 
-def _flat(statistics: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    return {f"stats/{name}/{kind}": value for name, of in statistics.items() for kind, value in of.items()}
+def _episode(number: int, start: int, count: int, task: str) -> dict[str, Any]:
+    """Return the entry of an episode, without statistics."""
+    chunk, file = divmod(number, _FILES_PER_CHUNK)
+    return {
+        "episode_index": number,
+        "tasks": [task],
+        "length": count,
+        "dataset_from_index": start,
+        "dataset_to_index": start + count,
+        _CHUNK: chunk,
+        _FILE: file,
+        "meta/episodes/chunk_index": 0,
+        "meta/episodes/file_index": 0,
+    }
 
 
 def _task(run: FinishedRun) -> str:
-    task = str((run.about.episode or {})["task"])
-    return INSTRUCTIONS[task]
+    name = (run.about.episode or {}).get("task")
+    if name not in INSTRUCTIONS:
+        raise BadInput(f"{run.folder / 'run.json'}: episode.task: unknown task {name!r}; save it again")
+    return INSTRUCTIONS[name]
 
 
 def _values(steps: EpisodeSteps, run: FinishedRun, camera: str | None) -> dict[str, NDArray[Any]]:
@@ -181,21 +191,27 @@ def _summary(array: NDArray[Any]) -> NDArray[Any]:
     return np.stack([np.bincount(array[..., channel].ravel(), minlength=256) for channel in channels])
 
 
-def _statistics(name: str, summaries: Sequence[NDArray[Any]], count: int) -> dict[str, Any]:
-    """Return minimum, maximum, mean, deviation, number and quantiles of a feature over episodes.
+def _statistics(summaries: Mapping[str, Sequence[NDArray[Any]]], count: int) -> dict[str, dict[str, Any]]:
+    """Return minimum, maximum, mean, deviation, quantiles and number of each feature over episodes.
 
     Those of images are of each channel in 0..1, as (3, 1, 1).
     """
-    if name.startswith(_IMAGES):
-        numbers = _of_pixels(np.sum(summaries, axis=0))
-        return {kind: (value[:, None, None] / 255.0).tolist() for kind, value in numbers.items()} | {
-            "count": [count]
-        }
-    values = np.concatenate(summaries)
-    found = {"min": values.min(axis=0), "max": values.max(axis=0)}
-    found |= {"mean": values.mean(axis=0, dtype=np.float64), "std": values.std(axis=0, dtype=np.float64)}
-    found |= zip(_KINDS, np.quantile(values.astype(np.float64), _QUANTILES, axis=0), strict=True)
-    return {kind: value.tolist() for kind, value in found.items()} | {"count": [count]}
+    found = {}
+    for name, of in summaries.items():
+        if name.startswith(_IMAGES):
+            numbers = {k: value[:, None, None] / 255.0 for k, value in _of_pixels(np.sum(of, axis=0)).items()}
+        else:
+            numbers = _of_values(np.concatenate(of))
+        found[name] = {kind: value.tolist() for kind, value in numbers.items()} | {"count": [count]}
+    return found
+
+
+def _of_values(values: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """Return the statistics (N,) of values (T, N)."""
+    exact = values.astype(np.float64)
+    found = {"min": values.min(axis=0), "max": values.max(axis=0), "mean": exact.mean(axis=0)}
+    quantiles = dict(zip(_KINDS, np.quantile(exact, _QUANTILES, axis=0), strict=True))
+    return found | {"std": exact.std(axis=0)} | quantiles
 
 
 def _of_pixels(counts: NDArray[np.int64]) -> dict[str, NDArray[np.float64]]:
