@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,13 @@ from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.observation import Observation, OnDemand, Senses
 from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.frame import Frame, Odometry, joined
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
+
+if TYPE_CHECKING:
+    from peopleboy.sim.world import SimulatedWorld  # which reports need not load
 
 Current = tuple[FaultSpec, float]  # a fault that is active, and the time [s] since it began
 _REPEATING = ("camera_frozen", "camera_shutter", "frames_dropped", "frames_late", "frames_duplicated")
@@ -189,7 +191,7 @@ class SensorFaults:
 class FaultySensors:
     """A world whose sensors and wheels fail as the scenario asks; the ground truth stays correct."""
 
-    def __init__(self, world: SimulatedWorld, faults: Sequence[FaultSpec]) -> None:
+    def __init__(self, world: "SimulatedWorld", faults: Sequence[FaultSpec]) -> None:
         self._world = world
         self._faults = SensorFaults(faults, world.config.robot.sonar.farthest_m)
 
