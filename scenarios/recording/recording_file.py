@@ -18,7 +18,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.run_folder.finished_run import runs_in
 
-MISSING = "needs rerun: pip install 'peopleboy[viewer]'"
+INSTALL = "pip install 'peopleboy[viewer]'"
+MISSING = f"needs rerun: {INSTALL}"
 
 # First bytes of a rerun file, and the last bytes of one that was closed.
 _HEAD, _FOOT, _FOOT_BYTES = b"RRF2", b"RRF2FOOT", 12
@@ -85,7 +86,8 @@ def is_whole(recording: Path) -> bool:
 
 def _check(recording: Path) -> None:
     if not recording.is_file():
-        raise BadInput(f"{recording}: no such recording; run the scenario without --no-recording")
+        why = "without --no-recording" if is_installed() else f"after you have installed rerun ({INSTALL})"
+        raise BadInput(f"{recording}: no such recording; run the scenario again, {why}")
     try:
         with recording.open("rb") as file:
             is_recording = file.read(len(_HEAD)) == _HEAD

@@ -47,3 +47,12 @@ def test_the_live_viewer_names_the_extra_that_brings_it(
 
     assert_names(told, "--live", "peopleboy[viewer]")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_run_without_recording_names_the_extra_too(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    (tmp_path / "run.json").write_text("{}", encoding="utf-8")
+    for is_there, words in ((False, "peopleboy[viewer]"), (True, "--no-recording")):
+        monkeypatch.setattr(recording_file, "is_installed", lambda there=is_there: there)
+        assert_names(refusal(capsys, "view", tmp_path), "recording.rrd", words)
