@@ -203,7 +203,7 @@ _SEEN: Final = 0.3
 )
 @options_of(
     "scenarios.running.run_options:RunOptions",
-    *("out", "tracker", "detector", "boxes", "behaviour", "physics", "overwrite"),
+    *("out", "frames", "tracker", "detector", "boxes", "behaviour", "physics", "overwrite"),
     out="Folder for the run folders.  [default: runs]",
     tracker=TRACKER,
     detector=DETECTOR,

@@ -378,6 +378,14 @@ def test_every_library_scenario_runs_a_little(name: str, tmp_path: Path) -> None
     assert (tmp_path / name / "contact_sheet.png").stat().st_size > 10_000
 
 
+def test_a_sweep_with_images_adds_them_to_runs_without(tmp_path: Path) -> None:
+    scenario, out = write_scene(tmp_path / "tiny.yaml", duration_s=0.2), tmp_path / "runs"
+    for options in ((), ("--frames",)):
+        assert run_cli("sweep", scenario, "--workers", 1, "--seeds", 2, "--out", out, *options) == 0
+        counts = [len(list((out / f"tiny-{seed}" / "thermal").glob("*.png"))) for seed in (0, 1)]
+        assert counts == [3 * bool(options)] * 2
+
+
 @pytest.mark.slow
 def test_a_sweep_goes_on_where_it_was_and_takes_no_other_run_for_its_own(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
