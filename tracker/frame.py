@@ -19,6 +19,7 @@ THERMAL: Final = "thermal"
 COLOUR: Final = "colour"
 PANORAMA: Final = "panorama"
 DEPTH: Final = "depth"
+LASER: Final = "laser"
 DEPTH_COLOUR: Final = "depth_colour"
 DEPTH_AMPLITUDE: Final = "depth_amplitude"
 

@@ -289,20 +289,37 @@ def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
 
 
 @TRACKERS.register(
+    "laser",
+    scope="a robot with a laser range finder",
+    summary="Tracks people on the floor by their legs in the scans of a laser range finder, with learned "
+    "detection, on a stationary or moving robot. Needs no image.",
+)
+def _laser(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
+    from peopleboy.tracker.frame import THERMAL
+    from peopleboy.tracker.sensors.laser.laser_sensor import LaserSensor
+    from peopleboy.tracker.tracking.config import SCANNED
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
+
+    return PeopleTracker((LaserSensor(tracker=SCANNED),), SCANNED, shown_in=(THERMAL,))
+
+
+@TRACKERS.register(
     "fused",
     scope="the default and both theses, with extensions",
-    summary="Combines detections in the thermal image, in the depth image, and in the panorama if the robot "
-    "has that camera, in one Kalman filter for each person. Uses depth to find occluders. Re-identifies "
-    "people by colours, motion and stature.",
+    summary="Combines detections in the thermal image, in the depth image, and in the panorama and the laser "
+    "scan if the robot has these, in one Kalman filter for each person. Uses depth to find occluders. "
+    "Re-identifies people by colours, motion and stature.",
 )
 def _fused(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.sensors.depth.depth_sensor import DepthSensor
+    from peopleboy.tracker.sensors.laser.laser_sensor import LaserSensor
     from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaSensor
     from peopleboy.tracker.tracking.config import FUSED
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
     ahead = (_thermal_sensor(detector, FUSED), DepthSensor(tracker=FUSED))
-    return PeopleTracker(ahead, FUSED, optional=(PanoramaSensor(tracker=FUSED),))
+    further = (PanoramaSensor(tracker=FUSED), LaserSensor(tracker=FUSED))
+    return PeopleTracker(ahead, FUSED, optional=further)
 
 
 @TRACKERS.register(

@@ -306,13 +306,13 @@ def fit_places(samples: PlaceSamples, view: PanoramaView, *, seed: int = 0) -> P
     people, offset = inputs[is_person], samples.offset_m[is_person]
     half, errors = len(people) // 2, np.empty_like(offset)
     for own, other in ((slice(half), slice(half, None)), (slice(half, None), slice(half))):
-        network = fit_dense(PLACE, _squares, people[other], offset[other], seed)
+        network = fit_dense(PLACE, squares, people[other], offset[other], seed)
         errors[own] = network.predict(people[own]) - offset[own]
     logarithms = np.log(np.abs(errors) + _LEAST_ERROR_M) + _LOG_OF_NORMAL
     return PlaceModel(
-        presence=fit_dense(PRESENCE, _cross_entropy, inputs, is_person[:, None], seed),
-        place=fit_dense(PLACE, _squares, people, offset, seed),
-        doubt=fit_dense(DOUBT, _squares, people, logarithms, seed),
+        presence=fit_dense(PRESENCE, cross_entropy, inputs, is_person[:, None], seed),
+        place=fit_dense(PLACE, squares, people, offset, seed),
+        doubt=fit_dense(DOUBT, squares, people, logarithms, seed),
         view=view,
     )
 
@@ -363,9 +363,11 @@ def _dense_loss(
     return error(outputs, targets).sum(axis=1).mean() + 0.5 * shrinkage * norm / len(targets), {}
 
 
-def _squares(outputs: jax.Array, targets: jax.Array) -> jax.Array:
+def squares(outputs: jax.Array, targets: jax.Array) -> jax.Array:
+    """Return half the squared errors."""
     return 0.5 * (outputs - targets) ** 2
 
 
-def _cross_entropy(outputs: jax.Array, targets: jax.Array) -> jax.Array:
+def cross_entropy(outputs: jax.Array, targets: jax.Array) -> jax.Array:
+    """Return the cross entropy of log-odds and labels."""
     return jnp.logaddexp(0.0, outputs) - targets * outputs

@@ -45,6 +45,10 @@ MODELS: Final[Mapping[str, tuple[str, str]]] = {
         "distance:DistanceTraining",
         "Train the network that estimates the distance of a person in a panorama.",
     ),
+    "legs": (
+        "legs:LegsTraining",
+        "Train the networks that detect people by their legs in laser scans.",
+    ),
     "windows": (
         "windows:WindowsTraining",
         "Train the support vector machines that decide whether a window shows a person.",

@@ -1,8 +1,9 @@
-"""Metrics of positions on the floor: errors in metres, and consistency of the covariances."""
+"""Metrics of positions on the floor: errors in metres, consistency of covariances, average precision."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final, Self
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 
@@ -159,3 +160,78 @@ def floor_squares(position_m: Floats) -> Floats:
     """
     side = np.full(position_m.shape, SIDE_M)
     return np.concatenate([position_m - SIDE_M / 2.0, side], axis=-1)
+
+
+# Average precision of detections on the floor.
+
+
+class FloorFrame(NamedTuple):
+    """Detections and true positions of people at one instant, in one frame of reference.
+
+    Attributes:
+        places_m: (M, 2) detections.
+        scores: (M,) the higher, the more certain.
+        people_m: (P, 2) true positions.
+        is_counted: (P,) whether a person has to be found; detections of the others are left out.
+    """
+
+    places_m: Floats
+    scores: Floats
+    people_m: Floats
+    is_counted: Bools
+
+
+class FloorPrecision(NamedTuple):
+    """Result of `average_precision`.
+
+    Attributes:
+        average_precision: area below the curve of precision over recall, 0..1; NaN without people.
+        error_m: mean distance of correct detections from the true positions; NaN without any.
+        people: number of people to find.
+        recall: (K,) by decreasing score.
+        precision: (K,) the same.
+    """
+
+    average_precision: float
+    error_m: float
+    people: int
+    recall: Floats
+    precision: Floats
+
+
+def average_precision(frames: Sequence[FloorFrame], radius_m: float) -> FloorPrecision:
+    """Evaluate detections, each of which is correct if it is within a radius of a person not yet found.
+
+    In each frame, detections are assigned in the order of their scores, each to the nearest person. The
+    precision is interpolated: at each recall it is the greatest at this or a higher recall.
+    """
+    scores, hits, errors, people = [], [], [], 0
+    for frame in frames:
+        people += int(frame.is_counted.sum())
+        for score, person, away_m in _assign(frame, radius_m):
+            if person < 0 or frame.is_counted[person]:
+                scores.append(score)
+                hits.append(person >= 0)
+                errors += [away_m] if person >= 0 else []
+    order = np.argsort(-np.array(scores), kind="stable")
+    right = np.cumsum(np.array(hits, np.float64)[order])
+    precision = right / np.arange(1, len(order) + 1)
+    best = np.maximum.accumulate(precision[::-1])[::-1]
+    recall = right / max(people, 1)
+    area = float(np.sum(np.diff(recall, prepend=0.0) * best)) if people else float("nan")
+    error_m = float(np.mean(errors)) if errors else float("nan")
+    return FloorPrecision(area, error_m, people, recall, precision)
+
+
+def _assign(frame: FloorFrame, radius_m: float) -> list[tuple[float, int, float]]:
+    """Return score, person and distance of each detection; -1 for none."""
+    found, is_free = [], np.ones(len(frame.people_m), np.bool_)
+    for k in np.argsort(-frame.scores, kind="stable").tolist():
+        away = np.where(is_free, np.hypot(*(frame.people_m - frame.places_m[k]).T), np.inf)
+        person = int(away.argmin()) if len(away) else -1
+        if person >= 0 and away[person] <= radius_m:
+            is_free[person] = False
+            found.append((float(frame.scores[k]), person, float(away[person])))
+        else:
+            found.append((float(frame.scores[k]), -1, np.inf))
+    return found

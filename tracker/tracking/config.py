@@ -10,6 +10,9 @@ NEAREST_M: Final = 0.3
 STATURE_M: Final = 1.72
 """Assumed stature of a person, from which the height of a box gives the distance."""
 
+USUAL_RATIO: Final = 0.2
+"""Width of a person's box, in heights, where it is not measured."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KalmanConfig:
@@ -275,6 +278,8 @@ class PeopleTrackerConfig:
         association_depth: association in the depth image.
         existence_panorama: evidence of the panorama.
         association_panorama: association in the panorama.
+        existence_laser: evidence of the laser range finder.
+        association_laser: association in its scans.
         colour: use of the colour image.
         detector_scores: use of the scores of a user's detector.
         stops_hidden: whether a hidden person who would be visible where the track is predicted stopped.
@@ -313,6 +318,10 @@ class PeopleTrackerConfig:
     )
     existence_panorama: ExistenceConfig = field(default_factory=ExistenceConfig)
     association_panorama: AssociationConfig = field(
+        default_factory=lambda: AssociationConfig(overlap=0.0, highest=2.4)
+    )
+    existence_laser: ExistenceConfig = field(default_factory=ExistenceConfig)
+    association_laser: AssociationConfig = field(
         default_factory=lambda: AssociationConfig(overlap=0.0, highest=2.4)
     )
     colour: ColourDetectionConfig = field(default_factory=ColourDetectionConfig)
@@ -381,3 +390,15 @@ RGBD: Final = replace(
 
 Chosen on seed 100 of the drives of `peopleboy reproduce --paper situation`, and of the suite `occlusion`.
 """
+
+SCANNED: Final = PeopleTrackerConfig(
+    motion=KalmanConfig(nearest_m=-math.inf),
+    existence_laser=ExistenceConfig(
+        sightings=3,
+        at_once=math.inf,
+        max_coast_s=0.7,
+        max_coast_occluded_s=3.0,
+        coast_occluded_share=math.inf,
+    ),
+)
+"""Settings for a laser range finder alone, where neither height nor colours are known."""

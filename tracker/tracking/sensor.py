@@ -135,10 +135,12 @@ class ProjectedBoxes(NamedTuple):
     Attributes:
         boxes: (K, 4) [px].
         is_inside: (K,) whether each is in front of the camera, with some of the box inside the image.
+        is_scan: whether it is the scan of a range finder, of which tracks have no boxes.
     """
 
     boxes: Floats
     is_inside: NDArray[np.bool_]
+    is_scan: bool = False
 
 
 def project_boxes(predicted: Predictions, view: Viewpoint, shape: tuple[int, int]) -> ProjectedBoxes:

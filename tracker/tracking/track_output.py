@@ -31,7 +31,7 @@ def output_tracks(
     output = [
         Track(
             id=one.id,
-            boxes=boxes,
+            boxes=_boxes(one, row, images, time_s, shown),
             place=places[row],
             confidence=one.confidence,
             status=one.status(time_s),
@@ -39,7 +39,7 @@ def output_tracks(
             occluder=one.occluder,
         )
         for row, one in enumerate(tracks.items)
-        if one.is_output(time_s, overlaps[row]) and (boxes := _boxes(one, row, images, time_s, shown))
+        if one.is_output(time_s, overlaps[row]) and any(image.is_inside[row] for image in images.values())
     ]
     return tuple(sorted(output, key=lambda track: track.id))
 
@@ -60,7 +60,7 @@ def _boxes(
     """Return the boxes of a track: a blend of the prediction and the detected box, if there is one."""
     boxes = {}
     for camera, image in images.items():
-        if not image.is_inside[row]:
+        if image.is_scan or not image.is_inside[row]:
             continue
         box = image.boxes[row]
         seen_s, detected = one.shown.get(camera, (-np.inf, box))

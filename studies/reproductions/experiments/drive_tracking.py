@@ -18,10 +18,9 @@ from peopleboy.studies.reproductions.experiments.drive_scores import (
     associate,
     people_on_floor,
 )
-from peopleboy.studies.reproductions.experiments.leg_tracker import CAMERAS, LegTracker, scan
 from peopleboy.studies.reproductions.experiments.playback import Moment, Stopwatch, play
 from peopleboy.studies.reproductions.plan import shortened
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Floats, Frame
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, LASER, Floats, Frame
 from peopleboy.tracker.reproductions.rgbd.rgbd_config import PRINTED, RgbdConfig
 from peopleboy.tracker.reproductions.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
 from peopleboy.tracker.sensors.depth.depth_sensor import DepthExplanation, DepthSensor, DepthSensorConfig
@@ -29,7 +28,7 @@ from peopleboy.tracker.sensors.depth.depth_view import DepthView
 from peopleboy.tracker.sensors.depth.pre_detection import PRINTED_SIZE
 from peopleboy.tracker.sensors.depth.window_model import people_detector, shipped_windows
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.trackers import Tracker, explanation_of
+from peopleboy.tracker.trackers import Tracker, explanation_of, make_tracker
 from peopleboy.tracker.tracking.config import RGBD
 from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
@@ -144,17 +143,19 @@ def body_m(name: str) -> float:
     return SENSORS[name].body_m
 
 
-def play_drive(scenario: Scenario, seed: int) -> Iterator[tuple[Moment, tuple[FloorPerson, ...]]]:
+def play_drive(
+    scenario: Scenario, seed: int, further: Sequence[str] = ()
+) -> Iterator[tuple[Moment, tuple[FloorPerson, ...]]]:
     """Play a scenario, and yield every image of the depth camera with the people present.
 
-    A depth camera is added to a robot without one.
+    A depth camera is added to a robot without one; frames also have the images of further cameras.
 
     Raises:
         BadInput: the robot needs a tracker to drive.
     """
     scenario = scenario.mounting((DEPTH,))
     view = DepthView.of(calibrations_of(scenario.world(seed).robot.cameras)[DEPTH], DEPTH)
-    for one in play(scenario, seed, DEPTH, images=(DEPTH, DEPTH_COLOUR)):
+    for one in play(scenario, seed, DEPTH, images=(DEPTH, DEPTH_COLOUR, *further)):
         yield one, tuple(people_on_floor(one.truth, view))
 
 
@@ -241,19 +242,21 @@ def watch_drive(scenario: str, seed: int, names: Sequence[str], scale: float, mo
 
 
 def watch_legs(scenario: str, most_s: float) -> Result:
-    """Track the person of a drive, up to a length [s], by legs and by depth and colour (SA 4.7.7).
+    """Track the person of a drive, up to a length [s], by legs in laser scans and by depth and colour.
+
+    Source: SA 4.7.7.
 
     Returns:
         Plain data: "truth" as in `watch_drive`, and "depth" and "legs", rows of frame, track, position
         forward and left of the robot [m].
     """
-    tracking, legs = DriveTracking(DEFAULT), LegTracker()
+    tracking, legs = DriveTracking(DEFAULT), make_tracker(LASER)
     truth: list[tuple[float, ...]] = []
     rows: list[tuple[float, ...]] = []
-    for moment, people in play_drive(shortened(scenario, most_s).with_cameras(CAMERAS), 0):
+    for moment, people in play_drive(shortened(scenario, most_s).mounting((LASER,)), 0, further=(LASER,)):
         tracking.update(moment, people)
-        found = legs.update(scan(moment.observation), moment.frame.odometry)
-        rows += [_row(moment.number, one.id, one.place_m) for one in found]
+        found = [one for one in legs.update(moment.frame) if one.status is not Status.TENTATIVE]
+        rows += [_row(moment.number, one.id, one.place.position_m) for one in found if one.place is not None]
         truth += [_truth_row(moment.number, person) for person in people]
     return {"truth": truth, "depth": tracking.rows, "legs": rows}
 

@@ -32,6 +32,7 @@ from peopleboy.tracker.sensors.depth.window_model import WindowModel, shipped_wi
 from peopleboy.tracker.track import Box
 from peopleboy.tracker.tracking.config import (
     STATURE_M,
+    USUAL_RATIO,
     KalmanConfig,
     PeopleTrackerConfig,
 )
@@ -49,7 +50,6 @@ from peopleboy.tracker.tracking.sensor import (
 )
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
-_USUAL_RATIO: Final = 0.2
 _SHOULDERS_M: Final = 0.48  # width that the search near a prediction expects
 WIDE_M: Final = 0.42
 
@@ -340,7 +340,7 @@ class DepthSensor:
         expected = predicted_boxes(predicted.states, view, predicted.ratio)
         ratios = np.array([one.ratio for one in found])
         has_width = ~np.isnan(ratios)
-        ratios[~has_width] = _USUAL_RATIO
+        ratios[~has_width] = USUAL_RATIO
         ratios[list(assigned.values())] = predicted.ratio[list(assigned)]
         boxes = measurement_boxes(measurement, view, ratios)
         return SensorDetections(
