@@ -27,8 +27,8 @@ from peopleboy.sim.cameras.sensors import (
     ColourSensor,
     DepthSensor,
     Image,
-    LaserSensor,
     PanoramaSensor,
+    RangeFinder,
     Sensor,
     ThermalSensor,
 )
@@ -240,7 +240,7 @@ KINDS: Final[dict[str, CameraKind]] = {
     "laser": CameraKind(
         config=LaserConfig,
         what="laser range finder, which scans a plane near the floor",
-        sensor=LaserSensor,
+        sensor=RangeFinder,
         renderer=ScanRenderer(),
         layers=(
             Layer(

@@ -188,7 +188,7 @@ class DepthSensor:
         return depth, amplitude_of(fine, config, self._amplitude_noise) if config.amplitude else None
 
 
-class LaserSensor:
+class RangeFinder:
     """Laser range finder: ranges in millimetres."""
 
     def __init__(self, config: LaserConfig, name: str, seed: int) -> None:

@@ -21,7 +21,8 @@ from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks,
 from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.evaluation.floor import FloorFrame, average_precision
 from peopleboy.tracker.frame import LASER
-from peopleboy.tracker.sensors.laser.leg_model import FILE, LegModel, group_votes
+from peopleboy.tracker.sensors.laser.beam_votes import group_votes
+from peopleboy.tracker.sensors.laser.leg_model import FILE, LegModel
 from peopleboy.tracker.sensors.laser.scan_windows import FARTHEST_M, cut_windows
 
 Floats = NDArray[np.float64]

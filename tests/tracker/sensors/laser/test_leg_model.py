@@ -11,7 +11,8 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import ScanCalibration
 from peopleboy.tracker.networks.weights_archive import WeightsArchive
-from peopleboy.tracker.sensors.laser.leg_model import APART_M, LegModel, Votes, group_votes, vote_places
+from peopleboy.tracker.sensors.laser.beam_votes import APART_M, Votes, group_votes, vote_places
+from peopleboy.tracker.sensors.laser.leg_model import LegModel
 from peopleboy.tracker.sensors.laser.scan_windows import SIZE, WINDOW, cut_windows
 
 LEG_M = 0.055
