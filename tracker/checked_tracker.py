@@ -122,6 +122,15 @@ def _place_faults(place: object) -> Iterator[str]:
             "covariance_m2 must be a covariance: xx >= 0, yy >= 0 and xy no more than both allow, "
             f"got xx, xy, yy {place.covariance_m2!r}"
         )
+    yield from _velocity_faults(place)
+
+
+def _velocity_faults(place: FloorPlace) -> Iterator[str]:
+    velocity, covariance = place.velocity_m_s, place.velocity_covariance_m2_s2
+    if velocity is not None and not _are_numbers(velocity, 2):
+        yield f"velocity_m_s must be None or a tuple of finite m/s ahead and left, got {velocity!r}"
+    if covariance is not None and not (_are_numbers(covariance, 3) and _is_covariance(*covariance)):
+        yield f"velocity_covariance_m2_s2 must be None or xx, xy, yy of a covariance, got {covariance!r}"
 
 
 def _other_faults(track: Track) -> Iterator[str]:

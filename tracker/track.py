@@ -20,15 +20,19 @@ class Status(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FloorPlace:
-    """A position on the floor, and its uncertainty.
+    """A position on the floor and, if known, the velocity, with their uncertainties.
 
     Attributes:
         position_m: x forward, y left in the robot frame [m].
         covariance_m2: xx, xy, yy of the error covariance [m2].
+        velocity_m_s: velocity relative to the floor along the same axes [m/s]; None if unknown.
+        velocity_covariance_m2_s2: xx, xy, yy of its error covariance [m2/s2]; None if unknown.
     """
 
     position_m: tuple[float, float]
     covariance_m2: tuple[float, float, float]
+    velocity_m_s: tuple[float, float] | None = None
+    velocity_covariance_m2_s2: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

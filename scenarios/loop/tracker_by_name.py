@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Mapping
 
+import numpy as np
+
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.robot import ORACLE
@@ -51,7 +53,13 @@ class OracleTracker:
 
 
 def _place(person: PersonTruth, robot: Pose2) -> FloorPlace:
-    return FloorPlace(position_m=robot.to_local(person.position_m), covariance_m2=(0.0, 0.0, 0.0))
+    forward_m_s, left_m_s = robot.vectors_to_local(np.array(person.velocity_m_s)).tolist()
+    return FloorPlace(
+        position_m=robot.to_local(person.position_m),
+        covariance_m2=(0.0, 0.0, 0.0),
+        velocity_m_s=(forward_m_s, left_m_s),
+        velocity_covariance_m2_s2=(0.0, 0.0, 0.0),
+    )
 
 
 def make_named_tracker(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:

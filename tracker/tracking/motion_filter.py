@@ -153,7 +153,7 @@ def predicted_boxes(states: StateEstimates, view: Viewpoint, ratio: Floats) -> F
 
 
 def floor_positions(states: StateEstimates, common_m: Floats, origin_m: Position) -> list[FloorPlace]:
-    """Return positions on the floor in the robot frame.
+    """Return positions and velocities on the floor in the robot frame.
 
     Args:
         states: K people.
@@ -167,13 +167,23 @@ def floor_positions(states: StateEstimates, common_m: Floats, origin_m: Position
     axes = np.stack([np.column_stack([sight[:, 1], -sight[:, 0]]), sight], axis=1)
     common = axes.transpose(0, 2, 1) @ (np.square(common_m)[:, :, None] * axes)
     spread = states.covariance[:, (0, 0, 2, 2), (0, 2, 0, 2)].reshape(-1, 2, 2) + common
+    drifts = states.covariance[:, (3, 3, 5, 5), (3, 5, 3, 5)].reshape(-1, 2, 2)
     return [
         FloorPlace(
             position_m=(forward + ahead, left - right),
-            covariance_m2=(float(each[1, 1]), -float(each[0, 1]), float(each[0, 0])),
+            covariance_m2=_to_robot(each),
+            velocity_m_s=(ahead_m_s, -right_m_s),
+            velocity_covariance_m2_s2=_to_robot(drift),
         )
-        for (right, ahead), each in zip(place.tolist(), spread, strict=True)
+        for (right, ahead), each, (right_m_s, ahead_m_s), drift in zip(
+            place.tolist(), spread, states.mean[:, (3, 5)].tolist(), drifts, strict=True
+        )
     ]
+
+
+def _to_robot(covariance: Floats) -> tuple[float, float, float]:
+    """Return xx, xy, yy in the robot frame of a covariance (2, 2) to the right and ahead."""
+    return float(covariance[1, 1]), -float(covariance[0, 1]), float(covariance[0, 0])
 
 
 def _turn(moved: Odometry) -> Floats:

@@ -1,0 +1,1 @@
+"""Prediction of where people walk, on unseen scenes."""
