@@ -1,4 +1,4 @@
-"""Predictions in one scene, from true tracks and from those of a tracker."""
+"""Predictions in one random world, from true tracks and from those of a tracker."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,9 +8,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.files.load import load_scenario, parse_scenario
+from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.robot import ORACLE
-from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import OracleTracker, make_named_tracker
 from peopleboy.scenarios.random_worlds.random_world import random_world
@@ -36,15 +35,15 @@ class Errors(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PredictionTask:
-    """Predictions in one scene: a scenario of the library, or the number of a random world."""
+    """Predictions in one random world, by its number."""
 
-    scene: str | int
+    world: int
     tracker: str
 
     @property
     def name(self) -> str:
         """Name for messages."""
-        return f"{self.scene}, {self.tracker}"
+        return f"world {self.world}, {self.tracker}"
 
     @property
     def size(self) -> int:
@@ -52,8 +51,8 @@ class PredictionTask:
         return 1
 
     def __call__(self, report_progress: ReportProgress) -> dict[str, Errors]:
-        """Run the scene; return the errors by tracks and predictor."""
-        found = _predictions(self.scene, self.tracker)
+        """Run the world; return the errors by tracks and predictor."""
+        found = _predictions(self.world, self.tracker)
         report_progress(1)
         return found
 
@@ -66,16 +65,17 @@ class Instant(NamedTuple):
     truth: Truth
 
 
-def _predictions(scene: str | int, tracker: str) -> dict[str, Errors]:
-    scenario, seed = _scenario(scene)
+def _predictions(number: int, tracker: str) -> dict[str, Errors]:
+    data = random_world(number) | {"physics": "kinematic"}
+    scenario = parse_scenario(data, source=f"world {number}", folder=Path())
     places: list[dict[int, tuple[float, float]]] = []
     truths: list[Truth] = []
     memories = {name: PathMemory() for name in dict.fromkeys((ORACLE, tracker))}
     instants: dict[str, list[Instant]] = {name: [] for name in memories}
     oracle, moved = OracleTracker(lambda: truths[-1]), _Motion()
-    people_tracker = make_named_tracker(tracker, seed, lambda: world.truth())
+    people_tracker = make_named_tracker(tracker, number, lambda: world.truth())
     scenario = scenario.mounting(people_tracker.cameras)
-    with SimulatedWorld(scenario.world(seed)) as world:
+    with SimulatedWorld(scenario.world(number)) as world:
         for tick in closed_loop(world, people_tracker, scenario.make_behaviour(), scenario.frames):
             truths.append(tick.truth)
             places.append({one.id: one.position_m for one in tick.truth.people})
@@ -90,13 +90,6 @@ def _predictions(scene: str | int, tracker: str) -> dict[str, Errors]:
         for predictor in PREDICTORS
         for name, several in instants.items()
     }
-
-
-def _scenario(scene: str | int) -> tuple[Scenario, int]:
-    if isinstance(scene, str):
-        return load_scenario(scene), 0
-    data = random_world(scene) | {"physics": "kinematic"}
-    return parse_scenario(data, source=f"world {scene}", folder=Path()), scene
 
 
 class _Motion:
