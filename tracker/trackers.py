@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
     from peopleboy.tracker.track import Box, Track
     from peopleboy.tracker.tracking.config import PeopleTrackerConfig
+    from peopleboy.tracker.tracking.people_gallery import PeopleGallery
 
 
 @runtime_checkable
@@ -43,6 +44,15 @@ class Introducible(Protocol):
 
     def introduce(self, box: "Box") -> None:
         """Report that a person is at this box [px] of the thermal image in the next frame."""
+        ...
+
+
+@runtime_checkable
+class UsesGallery(Protocol):
+    """A tracker that recognises people of earlier runs."""
+
+    def use_gallery(self, gallery: "PeopleGallery") -> None:
+        """Recognise the people of a gallery from the first frame on, and keep it up to date."""
         ...
 
 

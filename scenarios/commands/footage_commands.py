@@ -75,7 +75,8 @@ class _Footage(PlainPath):
 )
 @options_of(
     "scenarios.footage.options:TrackOptions",
-    *("rate_hz", "timestamps", "tracker", "truth", "protocol", "boxes", "seed", "video", "overwrite"),
+    *("rate_hz", "timestamps", "tracker", "gallery", "truth", "protocol", "boxes", "seed", "video"),
+    "overwrite",
     tracker=f"Tracker to use: {_TRACKERS}.  [default: detection, detection-live for a live source, or rgbd "
     "with --depth]",
 )

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 @click.argument("scenario", shell_complete=complete_scenario)
 @options_of(
     "scenarios.running.run_options:RunOptions",
-    *("seed", "out", "frames", "tracker", "detector", "boxes", "behaviour", "physics"),
+    *("seed", "out", "frames", "tracker", "detector", "gallery", "boxes", "behaviour", "physics"),
     *("renderer", "record", "lossless", "overwrite"),
     seed=SEED,
     out="Output folder.  [default: runs/SCENARIO-SEED, followed by -TRACKER, -DETECTOR, -BEHAVIOUR or "
@@ -77,10 +77,8 @@ def run(
 
     _check_physics(given)
     is_suite = scenario in suite_names()
-    if is_suite and given.seed is not None:
-        raise BadInput(f"--seed {given.seed}: suite {scenario} has its own seeds; leave it out")
-    if is_suite and given.behaviour is not None:
-        raise BadInput(f"--behaviour {given.behaviour}: suite {scenario} has its own drives; leave it out")
+    if is_suite:
+        _check_suite(scenario, given)
     loaded = None if is_suite else load_scenario(scenario)
     seed = given.seed if given.seed is not None else 0 if loaded is None else loaded.seed
     name = (scenario if loaded is None else f"{loaded.name}-{seed}") + _others(loaded, given)
@@ -114,6 +112,16 @@ def run(
 
             options = replace(options, viewer=stack.enter_context(live_viewer(click.echo)))
         _run_one(loaded, options, output)
+
+
+def _check_suite(name: str, given: "GivenOptions[RunOptions]") -> None:
+    """Refuse options that a suite has itself, or that only single runs have."""
+    if given.seed is not None:
+        raise BadInput(f"--seed {given.seed}: suite {name} has its own seeds; leave it out")
+    if given.behaviour is not None:
+        raise BadInput(f"--behaviour {given.behaviour}: suite {name} has its own drives; leave it out")
+    if given.gallery is not None:
+        raise BadInput(f"--gallery {given.gallery}: is for single runs, and {name} is a suite; leave it out")
 
 
 def _check_physics(given: "GivenOptions[RunOptions]") -> None:

@@ -203,6 +203,13 @@ class TrackOptions:
         ),
     ] = None
     tracker: Annotated[str, Field(description="Tracker.")] = DEFAULT_TRACKER
+    gallery: Annotated[
+        Path | None,
+        Field(
+            description="File of the people that the tracker knows; it is read before the run if it exists, "
+            "and written after it. A person from an earlier run keeps the id."
+        ),
+    ] = None
     truth: Annotated[
         Path | None,
         Field(

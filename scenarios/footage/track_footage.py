@@ -17,6 +17,7 @@ from peopleboy.scenarios.footage.views import Views, open_views
 from peopleboy.scenarios.run_folder.atomic_output import atomic_folder, check_named
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.run_files import check_detections
+from peopleboy.scenarios.running.gallery_file import use_gallery
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.latency import write_latency
@@ -78,9 +79,9 @@ def track_footage(
     views = open_views(options)
     truth = _truth_of(options, views)
     kind = _kind_of(options, truth)
-    tracker = CheckedTracker(
-        _tracker_of(options, views, truth, kind), f"tracker {options.shown_tracker!r}", views.cameras, kind
-    )
+    made = _tracker_of(options, views, truth, kind)
+    save_gallery = use_gallery(made, options.shown_tracker, options.gallery, options.out)
+    tracker = CheckedTracker(made, f"tracker {options.shown_tracker!r}", views.cameras, kind)
     if views.is_exact:
         check_detections(options.tracker, views.expected)
     about = _about(options, views) | {"boxes": kind}
@@ -104,6 +105,7 @@ def track_footage(
                 report(log.frames, views.expected)
         scores = log.finish()
         write_latency(folder, tracker.times_ms)
+        save_gallery()
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
         about["rate_hz"] = views.rate_hz  # of a live source, known by now
         if truth is not None:
@@ -214,7 +216,7 @@ def _about(options: TrackOptions, views: Views) -> dict[str, Any]:
         **views.about(),
         "start": options.start,
         "versions": versions(),
-    }
+    } | ({} if options.gallery is None else {"gallery": options.gallery.name})
 
 
 _ROUND: Final = {

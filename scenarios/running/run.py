@@ -28,6 +28,7 @@ from peopleboy.scenarios.run_folder.finished_run import note_on, open_run
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.run_folder.image_files import about_gains
 from peopleboy.scenarios.run_folder.run_files import check_detections
+from peopleboy.scenarios.running.gallery_file import use_gallery
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.comfort_metrics import score_comfort
 from peopleboy.scenarios.scores.contacts import ContactLog
@@ -147,6 +148,7 @@ def _run(
     name, given = tracker_name(scenario, options), scenario.robot.cameras
     shown = shown_name(name)
     tracker = make_named_tracker(name, options.seed, lambda: world.truth())
+    save_gallery = use_gallery(tracker, shown, options.gallery, options.out)
     scenario = scenario.mounting(tracker.cameras)
     mounted = [camera for camera in scenario.robot.cameras if camera not in given]
     config = scenario.world(options.seed, options.renderer)
@@ -155,6 +157,7 @@ def _run(
     check_detections(name, frames)
     about = about_run(scenario, options, config, shown)
     about |= {"mounted_for_tracker": mounted} if mounted else {}
+    about |= {} if options.gallery is None else {"gallery": options.gallery.name}
     if episode is not None:
         about["episode"] = episode.to_json()
     _LOG.info(
@@ -216,6 +219,7 @@ def _run(
         scores = score_run(options.out, frames, drive, options.boxes, shown)
         scores = replace(scores, contacts=tuple(observers.contacts.contacts))
         observers.save(options.out)
+        save_gallery()
         folder.complete(scores.to_json())
         _LOG.info("wrote %s", options.out)
     return scores

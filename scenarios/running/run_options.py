@@ -29,6 +29,13 @@ class RunOptions:
     frames: Annotated[bool, Field(description="Write the images of all cameras as PNG files.")] = False
     tracker: Annotated[str | None, Field(description="Tracker.")] = None
     detector: Annotated[str | None, Field(description="Detector of the tracker.")] = None
+    gallery: Annotated[
+        Path | None,
+        Field(
+            description="File of the people that the tracker knows; it is read before the run if it exists, "
+            "and written after it. A person from an earlier run keeps the id."
+        ),
+    ] = None
     boxes: Annotated[
         BoxKind,
         Field(

@@ -10,6 +10,7 @@ from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibratio
 from peopleboy.tracker.frame import Frame, Odometry, check_frame, lacking, time_step
 from peopleboy.tracker.track import Box, Track
 from peopleboy.tracker.tracking.config import PeopleTrackerConfig
+from peopleboy.tracker.tracking.people_gallery import PeopleGallery
 from peopleboy.tracker.tracking.sensor import (
     ProjectedBoxes,
     Sensor,
@@ -73,6 +74,10 @@ class PeopleTracker:
         """
         for sensor in (*self._sensors, *self._mounted(calibrations)):
             sensor.check_cameras(calibrations)
+
+    def use_gallery(self, gallery: PeopleGallery) -> None:
+        """Recognise the people of a gallery, and keep it up to date; call it before the first frame."""
+        self._tracks.gallery = gallery
 
     def introduce(self, box: Box) -> None:
         """Report that a person is at this box [px] in the next frame, as for single-object trackers."""

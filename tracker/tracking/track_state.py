@@ -145,6 +145,12 @@ class TrackState:
         self.log_odds = max(self.log_odds, before.log_odds)
         before.id, before.seen_s = 0, -math.inf
 
+    def recognise(self, number: int, colours: Colours) -> None:
+        """Continue a person of an earlier run, of this id and these colours, as this track."""
+        self.id, self.confirmed_s = number, -math.inf
+        self.colours = blend_colours(colours, self.colours, self.existence.learning)
+        self.log_odds = max(self.log_odds, self.existence.confirmed)
+
     def update_missed(self, occluder: int | None, dt_s: float, *, is_hidden: bool) -> None:
         """Record a missed detection, the possible occluder, and whether something hides the person.
 

@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.tracking.appearance import colour_similarities
 from peopleboy.tracker.tracking.association import CLEAR, shared_area
 from peopleboy.tracker.tracking.config import KalmanConfig, ReidentificationConfig
 from peopleboy.tracker.tracking.motion_filter import NO_STATES, Floats, StateEstimates, predict
+from peopleboy.tracker.tracking.people_gallery import KnownPerson, PeopleGallery
 from peopleboy.tracker.tracking.reidentification import (
     Candidates,
     assign_lost,
@@ -30,12 +32,14 @@ class Tracks:
         states: of the motion filters, in the level frame.
         last_seen: the same when each track was last detected.
         origin_m: origin of the level frame in the robot frame; None without a calibrated camera.
+        gallery: the people of earlier runs, kept up to date; None to forget people with their tracks.
     """
 
     def __init__(self) -> None:
         self.items: list[TrackState] = []
         self.states = self.last_seen = NO_STATES
         self.origin_m: Position | None = None
+        self.gallery: PeopleGallery | None = None
         self._keys, self._ids = count(), count(1)
 
     def predict(self, dt_s: float, moved: Odometry, config: KalmanConfig) -> StateEstimates:
@@ -145,6 +149,7 @@ class Tracks:
         """Confirm, re-identify and delete tracks."""
         self._reidentify(time_s, config)
         resolve_identity_swaps(self.items, time_s, config)
+        self._update_gallery()
         kept = [row for row, one in enumerate(self.items) if not one.is_deleted(time_s)]
         self._keep(np.array(kept, int))
 
@@ -159,22 +164,59 @@ class Tracks:
             and time_s - one.confirmed_s <= config.revised_s
         ]
         lost = [row for row, one in enumerate(items) if one.is_lost(time_s, config.lost_s)]
+        known = [] if self.gallery is None else self.gallery.absent({one.id for one in items})
         before: dict[int, int] = {}
         is_open = np.zeros(len(fresh), bool)
-        if fresh and lost:
+        if fresh and (lost or known):
             states = self.states.take(np.array(fresh, np.intp))
             found = Candidates.of(states, [items[row].colours for row in fresh])
-            odds = self.odds_of_lost(lost, found, time_s, config)
+            parts = [self.odds_of_lost(lost, found, time_s, config)] if lost else []
+            parts += [self._odds_of_known(known, found, config)] if known else []
+            odds = np.concatenate(parts)
             before, is_open = assign_lost(odds), odds.max(axis=0) > -config.unclear
         for number, row in enumerate(fresh):
             one = items[row]
             if number in before:
-                one.inherit(items[lost[before[number]]])
+                self._continue(one, before[number], lost, known)
             elif not one.is_confirmed and not (is_open[number] and time_s - one.born_s < config.undecided_s):
                 self._confirm(one, time_s)
 
+    def _odds_of_known(
+        self, known: Sequence[int], found: Candidates, config: ReidentificationConfig
+    ) -> Floats:
+        """Return the log-odds (G, M) that people who are found are those of the gallery, less those needed.
+
+        Colours must be known, as nothing else is sure enough after an absence of any length.
+        """
+        assert self.gallery is not None
+        absent = self.gallery.candidates(known)
+        odds = same_person_log_odds(absent, np.zeros(len(known)), found, config)
+        return np.where(colour_similarities(absent.colours, found.colours)[1], odds, -np.inf)
+
+    def _continue(self, one: TrackState, before: int, lost: Sequence[int], known: Sequence[int]) -> None:
+        """Let a new track continue a lost track or, after all of these, a person of the gallery."""
+        if self.gallery is not None and one.is_confirmed:
+            self.gallery.people.pop(one.id, None)  # it was not a new person
+        if before < len(lost):
+            one.inherit(self.items[lost[before]])
+        elif self.gallery is not None:
+            number = known[before - len(lost)]
+            one.recognise(number, self.gallery.people[number].colours)
+
+    def _update_gallery(self) -> None:
+        """Keep what is known of each person whose track is neither brief nor without colours."""
+        if self.gallery is None:
+            return
+        for one, mean, covariance in zip(
+            self.items, self.last_seen.mean, self.last_seen.covariance, strict=True
+        ):
+            if one.is_confirmed and one.watched_s > one.existence.brief_s and one.colours.any():
+                known = KnownPerson(one.colours, float(mean[6]), float(covariance[6, 6]))
+                self.gallery.people[one.id] = known
+
     def _confirm(self, one: TrackState, time_s: float) -> None:
-        one.id, one.confirmed_s = next(self._ids), time_s
+        one.id = next(self._ids) if self.gallery is None else self.gallery.take_id()
+        one.confirmed_s = time_s
         one.log_odds = max(one.log_odds, one.existence.confirmed)
 
     def _keep(self, rows: NDArray[np.intp]) -> None:
