@@ -17,7 +17,7 @@ import numpy as np
 
 from benchmarks import call
 from benchmarks.compare import compare, print_table, rows_of, update_results
-from benchmarks.safety import KINDS, Stop, measure_stop, way_along
+from benchmarks.reliability.safety import KINDS, Stop, measure_stop, way_along
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import FaultSpec

@@ -16,7 +16,7 @@ import click
 import pybullet
 
 from benchmarks import call
-from benchmarks.safety import SMALL
+from benchmarks.reliability.safety import SMALL
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.robot import ORACLE

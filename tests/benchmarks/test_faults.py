@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import pytest
 
 from benchmarks.reliability.faults import COLUMNS, FAULTS, FROM_S, LASTS_S, FaultRun, run_with, summarise
-from benchmarks.safety import KINDS, Stop
+from benchmarks.reliability.safety import KINDS, Stop
 from peopleboy.scenarios.files.load import load_scenario
 
 

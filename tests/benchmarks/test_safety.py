@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.safety import (
+from benchmarks.reliability.safety import (
     COLUMNS,
     KINDS,
     Approach,

@@ -1,4 +1,4 @@
-"""Safety of the robot in random worlds, with and without faults: `python -m benchmarks.safety`.
+"""Safety of the robot in random worlds, with and without faults: `python -m benchmarks.reliability.safety`.
 
 The robot follows people in random worlds, with a fault in every third of them. Only worlds in which it drives
 at least 1 m count. Reported are contacts with their cause, the closest approach to a person, and how soon the
@@ -329,4 +329,4 @@ def main(worlds: int, first: int, duration: float, trackers: tuple[str, ...], wo
 
 
 if __name__ == "__main__":
-    call(main, "benchmarks.safety")
+    call(main, "benchmarks.reliability.safety")
