@@ -2,10 +2,15 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Final
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.atomic_output import write_aside, writing_to
+from peopleboy.tracker.frame import COLOUR, DEPTH, PANORAMA
 from peopleboy.tracker.trackers import Tracker, UsesGallery
+
+_COLOURED: Final = frozenset({COLOUR, DEPTH, PANORAMA})
+"""Cameras with colour images."""
 
 
 def use_gallery(tracker: Tracker, name: str, path: Path | None, out: Path) -> Callable[[], None]:
@@ -18,7 +23,7 @@ def use_gallery(tracker: Tracker, name: str, path: Path | None, out: Path) -> Ca
         out: folder of the run, which may be replaced, and so must not contain the file.
 
     Raises:
-        BadInput: the tracker has no gallery, or the file cannot be read or is in a wrong place.
+        BadInput: the tracker has no gallery or no colours, or the file cannot be read or is in a wrong place.
     """
     if path is None:
         return lambda: None
@@ -26,6 +31,8 @@ def use_gallery(tracker: Tracker, name: str, path: Path | None, out: Path) -> Ca
 
     if not isinstance(tracker, UsesGallery):
         raise BadInput(f"--gallery {path}: tracker {name!r} has no gallery of people; leave it out")
+    if not _COLOURED.intersection(tracker.cameras):
+        raise BadInput(f"--gallery {path}: tracker {name!r} has no colours of people; leave it out")
     if path.resolve().is_relative_to(out.resolve()):
         raise BadInput(f"--gallery {path}: lies in the output folder {out}; give a file outside it")
     if not path.parent.is_dir():

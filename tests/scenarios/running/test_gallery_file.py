@@ -80,6 +80,7 @@ def test_people_of_an_earlier_run_keep_their_ids(tmp_path: Path) -> None:
     ("tracker", "name", "fault"),
     [
         ("contour", "gallery.json", "tracker 'contour' has no gallery of people"),
+        ("laser", "gallery.json", "tracker 'laser' has no colours"),
         ("truth", "gallery.json", "tracker 'truth' has no gallery of people"),
         ("detection", "missing/gallery.json", "there is no folder"),
         ("detection", "run/gallery.json", "lies in the output folder"),
