@@ -43,7 +43,7 @@ _RATE_HZ: Final = 5  # of scans: more of them would hardly differ
 _STEPS_DEG: Final = (0.25, 0.5, 0.5, 1.0)
 _HEIGHTS_M: Final = (0.2, 0.45)
 _NOISE_M: Final = (0.003, 0.03)
-_NEGATIVES: Final = 5  # beams that hit nobody, for each that hits a person
+_NEGATIVES: Final = 5  # beams without a person, for each beam on a person
 
 BEAM: Final = DenseRecipe((96, 32), 8, 2e-3, 1e-2)
 OFFSET: Final = DenseRecipe((64, 32), 12, 2e-3, 1e-2)

@@ -80,7 +80,6 @@ class SocialForce:
         push = push * np.where(self._sees(gap, away, wanted), 1.0, config.behind)
         push[np.arange(count), np.arange(count)] = 0.0
         force = (push[:, :, None] * (gap / away[:, :, None] + ahead / later[:, :, None])).sum(axis=1)
-        # A person who stands has no reason to step aside before somebody is near; the filter's noise is none.
         force += (wanted - velocities[:count]) / config.relaxation_s
         size = np.linalg.norm(force, axis=1, keepdims=True)
         return np.asarray(force * np.minimum(1.0, config.most_m_s2 / np.maximum(size, 1e-9)))
