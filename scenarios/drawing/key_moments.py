@@ -20,6 +20,7 @@ from peopleboy.tracker.track import Status, Track
 _KINDS = {
     "start": 1,
     "detected": 3,
+    "falls": 3,
     "contact starts": 3,
     "fault starts": 3,
     "most hidden": 4,

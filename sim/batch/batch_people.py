@@ -23,14 +23,14 @@ class Parts(NamedTuple):
     """The parts of Q people, one person after the other.
 
     Attributes:
-        offsets, soles: (Q, 17, 3) and (Q, 3, 3) [m] as in `Frame`.
+        offsets, supports: (Q, 17, 3) and (Q, 12, 3) [m] as in `BodyFrame`.
         first: (Q + 1,) where each one's parts begin.
-        bone, part_offset: of all parts, as in `Frame`.
+        bone, part_offset: of all parts, as in `BodyFrame`.
         body: (P,) number of the body that is a part, among those of all worlds.
     """
 
     offsets: Array
-    soles: Array
+    supports: Array
     first: Numbers
     bone: Numbers
     part_offset: Array
@@ -92,7 +92,7 @@ class BatchLimbs:
         counts = [len(frame.bone) for frame in frames]
         return Parts(
             offsets=np.stack([frame.offsets for frame in frames]),
-            soles=np.stack([frame.soles for frame in frames]),
+            supports=np.stack([frame.supports for frame in frames]),
             first=np.array(list(accumulate(counts, initial=0)), np.int64),
             bone=np.concatenate([frame.bone for frame in frames]),
             part_offset=np.concatenate([frame.part_offset for frame in frames]),
@@ -145,7 +145,7 @@ def _place(
     for k in range(len(who)):
         q, place = who[k], (places[k, 0], places[k, 1], places[k, 2])
         shift = hold(people, stances, q, turns)
-        put_on_floor(turns, parts.offsets[q], parts.soles[q], shift, place, bones)
+        put_on_floor(turns, parts.offsets[q], parts.supports[q], shift, place, bones)
         first, end = parts.first[q], parts.first[q + 1]
         poses = np.empty((end - first, 4, 4))
         carry(bones, parts.bone[first:end], parts.part_offset[first:end], poses)

@@ -29,7 +29,7 @@ class ConductSituation:
         heading: [rad] direction of its body.
         home: (2,) [m] the waypoint at which the script has it stay now; None on the way to the next one.
         is_walking: whether it is on the way to the next waypoint.
-        is_seated: whether it sits.
+        is_seated: whether it sits or lies.
         robot: the robot's state.
         walls: (K, 4) [m] rectangles that block people and their view.
     """

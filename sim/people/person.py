@@ -26,13 +26,13 @@ from peopleboy.sim.people.body.body_shapes import (
     bag,
     bone_index,
     build_body,
-    sole_points,
+    support_points,
 )
 from peopleboy.sim.people.body.clothes import dress
 from peopleboy.sim.people.body.gait import Gait
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, Posture, joint_offsets, joint_points
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, DOWN, Posture, joint_offsets, joint_points
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
 from peopleboy.sim.people.conducts import ConductSituation, Mind
 from peopleboy.sim.people.person_config import Arms, PersonConfig
@@ -46,6 +46,7 @@ Array = NDArray[np.float64]
 ARM_PARTS = (*_LIMBS, BAG_PART)
 PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, BAG_PART), start=1)}
 
+_LOW = (Posture.BENDING, Posture.CROUCHING, *DOWN)  # in which nothing more is bent to reach for a thing
 _ARM_POSTURES: dict[Arms, Posture | None] = {
     "swinging": None,
     "crossed": Posture.ARMS_CROSSED,
@@ -96,7 +97,7 @@ class Person:
         self._part_offset = np.array([g.offset_m for g in geometry.values()])
         self._joint_bone, self._joint_offset = joint_points(self._size)
         self._offsets = joint_offsets(self._size)
-        self._soles = sole_points(config.height_m)
+        self._supports = support_points(self._size)
         self._manner = USUAL if finisher is None else finisher.manner
         self.gait = Gait(self._offsets, config.height_m, self._manner)
         leave_s = math.inf if config.leave_s is None else config.leave_s
@@ -196,7 +197,7 @@ class Person:
                 heading=walker.heading,
                 home=walker.home,
                 is_walking=walker.is_walking,
-                is_seated=walker.posture is Posture.SITTING,
+                is_seated=walker.posture in DOWN,
                 robot=around.robot,
                 walls=around.walls,
             )
@@ -244,7 +245,7 @@ class Person:
     @property
     def frame(self) -> BodyFrame:
         """The geometry that connects its bones and parts."""
-        return BodyFrame(self._offsets, self._soles, self._part_bone, self._part_offset)
+        return BodyFrame(self._offsets, self._supports, self._part_bone, self._part_offset)
 
     @property
     def is_handling(self) -> bool:
@@ -306,7 +307,7 @@ class Person:
     def _on_the_floor(self, rotations: Array, shift: tuple[float, float]) -> Array:
         bones = np.empty((len(BONES), 4, 4))
         x, y = self.walker.position.tolist()
-        put_on_floor(rotations, self._offsets, self._soles, shift, (x, y, self.walker.heading), bones)
+        put_on_floor(rotations, self._offsets, self._supports, shift, (x, y, self.walker.heading), bones)
         return bones
 
     def _reach(
@@ -324,7 +325,7 @@ class Person:
 
         bend = 0.0
         blend = self.stance["blend"][0]
-        if blend[POSTURES[Posture.BENDING]] == blend[POSTURES[Posture.SITTING]] == 0.0:
+        if not any(blend[POSTURES[posture]] for posture in _LOW):
             bend = grasp.share * least_stoop(gap_m, arm_length(self.config.height_m))
         bowed, shift = bent(bend)
         bones = self._on_the_floor(bowed, shift)

@@ -189,7 +189,9 @@ class Waypoint:
         Field(
             description="posture during the pause: `standing` is upright, with the arms at the sides; "
             "`sitting` is as on a chair, and a chair may stand at that point; `bending` is bent "
-            "forward; `arms_raised` has both arms raised; `arms_crossed` has the arms crossed in "
+            "forward; `crouching` has knees and hips bent above the feet; `lying` is on the back on the "
+            "floor, with the feet near the point and the head behind; `fallen` is on the front, after a "
+            "fall of 0.6 s; `arms_raised` has both arms raised; `arms_crossed` has the arms crossed in "
             "front of the chest; `calling` has one arm raised, which waves until the robot is "
             "within `until_robot_within_m`"
         ),

@@ -1,9 +1,10 @@
-"""Events between one instant and the next: entries, exits, occlusions and contacts."""
+"""Events between one instant and the next: entries, exits, falls, occlusions and contacts."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+from peopleboy.sim.people.body.skeleton import Posture
 from peopleboy.sim.shapes.shapes import Vector
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, ThingTruth, Truth
 
@@ -29,7 +30,7 @@ class Event:
 
     Attributes:
         time_s: [s] since the start.
-        kind: "enters view", "leaves view", "occlusion starts", "total occlusion starts",
+        kind: "enters view", "leaves view", "falls", "occlusion starts", "total occlusion starts",
             "total occlusion ends", "occlusion ends", "contact starts" or "contact ends".
         person: the person concerned; the robot for contacts.
         other: the person or thing that hides or touches them; for a total occlusion the one that hides most
@@ -52,6 +53,7 @@ class EventLog:
 
     def __init__(self) -> None:
         self._in_view: set[str] = set()
+        self._upright: set[str] = set()
         self._hidden: dict[str, list[str]] = {}
         self._total: dict[str, str] = {}
         self._last_touch_s: dict[str, float] = {}
@@ -63,9 +65,18 @@ class EventLog:
         for name in sorted((self._in_view | self._hidden.keys() | self._total.keys()) - people.keys()):
             found += self._leave(name)
         for person in truth.people:
-            found += self._look_at(person, people.keys())
+            found += self._fall(person) + self._look_at(person, people.keys())
         found += self._touch(truth.time_s, truth.contacts)
         return [Event(time_s=truth.time_s, kind=kind, person=who, other=other) for kind, who, other in found]
+
+    def _fall(self, person: PersonTruth) -> list[_Reported]:
+        """Report the start of a fall, in view or not; a person who lies there from the start has not fallen."""
+        name, was_upright = person.name, person.name in self._upright
+        if person.posture != Posture.FALLEN:
+            self._upright.add(name)
+            return []
+        self._upright.discard(name)
+        return [("falls", name, "")] if was_upright else []
 
     def _look_at(self, person: PersonTruth, people: Collection[str]) -> list[_Reported]:
         name, found = person.name, list[_Reported]()

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import fma, multiply
 from peopleboy.sim.people.body.anthropometry import FOREARM_LENGTH, HAND_LENGTH, UPPER_ARM_LENGTH
+from peopleboy.sim.people.body.body_shapes import SUPPORTS
 from peopleboy.sim.people.body.skeleton import (
     BONE_INDEX,
     BONES,
@@ -31,35 +32,35 @@ class BodyFrame(NamedTuple):
 
     Attributes:
         offsets: (17, 3) [m] from joint to joint.
-        soles: (3, 3) [m] points of a sole, in the foot's frame.
+        supports: (12, 3) [m] points that the body may rest on, in the order of `SUPPORTS`.
         bone: (P,) index of the bone that carries each part.
         part_offset: (P, 3) [m] from that bone's joint to the part's frame.
     """
 
     offsets: Array
-    soles: Array
+    supports: Array
     bone: NDArray[np.int64]
     part_offset: Array
 
 
-_FEET = (BONE_INDEX["left_foot"], BONE_INDEX["right_foot"])
+_SUPPORTS = np.array([BONE_INDEX[bone] for bone in SUPPORTS])
 
 
 @njit(cache=True, nogil=True)
 def put_on_floor(
     turns: Array,
     offsets: Array,
-    soles: Array,
+    supports: Array,
     shift: tuple[float, float],
     place: tuple[float, float, float],
     bones: Array,
 ) -> None:
-    """Place bones so that the lowest point of both soles is on the floor.
+    """Place bones so that the lowest point of the body is on the floor: of a sole, unless the person lies.
 
     Args:
         turns: (17, 3) [rad] rotation vector of each bone against its parent.
         offsets: (17, 3) [m] joint offsets as returned by `joint_offsets`.
-        soles: (3, 3) [m] points of a sole, in the foot's frame.
+        supports: (12, 3) [m] as in `BodyFrame`.
         shift: [m] offset of the pelvis to the front and to the left.
         place: x, y [m] and heading [rad] of the person.
         bones: (17, 4, 4) output: the poses in the world frame.
@@ -68,12 +69,11 @@ def put_on_floor(
     own[0, 0], own[0, 1], own[0, 2] = shift[0], shift[1], 0.0
     body = chain(turns, own, PARENT_INDEX)
     lowest = math.inf
-    for foot in _FEET:
-        for sole in soles:
-            height = 0.0
-            for k in range(3):
-                height = fma(body[foot, 2, k], sole[k], height)
-            lowest = min(lowest, height + body[foot, 2, 3])
+    for point in range(len(supports)):
+        bone, height = _SUPPORTS[point], 0.0
+        for k in range(3):
+            height = fma(body[bone, 2, k], supports[point, k], height)
+        lowest = min(lowest, height + body[bone, 2, 3])
     for bone in range(len(body)):
         body[bone, 2, 3] -= lowest
     cos, sin = math.cos(place[2]), math.sin(place[2])

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -284,6 +285,24 @@ def sole_points(stature_m: float) -> NDArray[np.float64]:
     heel, toe = -0.040 * h, (table.FOOT_LENGTH - 0.040 - 0.0165) * h
     sole = -table.ANKLE_HEIGHT * h
     return np.array([[heel, 0.0, sole], [0.070 * h, 0.0, sole], [toe, 0.0, sole]])
+
+
+SUPPORTS: Final = (*("left_foot",) * 3, *("right_foot",) * 3, *("head", "chest", "pelvis") * 2)
+"""The bone of each point of `support_points`."""
+
+
+def support_points(size: BodySize) -> NDArray[np.float64]:
+    """Return (12, 3) [m] points that a body may rest on, each in the frame of its bone in `SUPPORTS`.
+
+    These are heel, ball and toe of both feet, then the back and the front of head, chest and pelvis.
+    """
+    h, g = size.stature_m, size.girths
+    head, chest, pelvis = g.head_length / 2.0, g.chest_depth / 2.0, g.buttock_depth / 2.0
+    ribs = _CHEST_CENTRE - THORAX_HEIGHT
+    back = [(-head, 0.0, 0.030), (-chest, 0.0, ribs), (-pelvis, 0.0, 0.016)]
+    front = [(-x, y, z) for x, y, z in back]
+    soles = sole_points(h)
+    return np.concatenate([soles, soles, h * np.array(back), h * np.array(front)])
 
 
 def bag(side: str, stature_m: float) -> PartGeometry:

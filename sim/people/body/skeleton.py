@@ -198,6 +198,9 @@ class Posture(StrEnum):
     STANDING = "standing"
     SITTING = "sitting"
     BENDING = "bending"
+    CROUCHING = "crouching"
+    LYING = "lying"
+    FALLEN = "fallen"
     ARMS_RAISED = "arms_raised"
     ARMS_CROSSED = "arms_crossed"
     CALLING = "calling"
@@ -233,6 +236,37 @@ _CHANGES: dict[Posture, dict[str, Vector]] = {
         "left_upper_arm": point_along((0.95, 0.10, -0.35)),
         "left_forearm": point_along((0.15, -0.05, -1.0)),
     },
+    Posture.CROUCHING: {
+        "pelvis": _pitch(38.0),
+        "abdomen": _pitch(10.0),
+        "chest": _pitch(8.0),
+        "head": _pitch(-34.0),
+        "left_thigh": (math.radians(10.0), math.radians(-148.0), 0.0),
+        "left_shin": _pitch(142.0),
+        "left_upper_arm": point_along((0.62, 0.12, -1.0)),
+        "left_forearm": point_along((1.0, -0.30, 0.15)),
+    },
+    # On the back, with the arms beside the trunk.
+    Posture.LYING: {
+        "pelvis": _pitch(-90.0),
+        "left_thigh": (math.radians(5.0), 0.0, 0.0),
+        "left_foot": _pitch(25.0),
+        "left_upper_arm": point_along((0.0, 0.28, -1.0)),
+        "left_forearm": point_along((0.05, 0.05, -1.0)),
+    },
+    # On the front, with one arm above the head and one leg aside.
+    Posture.FALLEN: {
+        "pelvis": _pitch(90.0),
+        "head": (0.0, math.radians(-6.0), math.radians(60.0)),
+        "left_thigh": (math.radians(22.0), math.radians(-2.0), 0.0),
+        "right_thigh": (math.radians(-6.0), 0.0, 0.0),
+        "left_foot": _pitch(60.0),
+        "right_foot": _pitch(60.0),
+        "left_upper_arm": point_along((0.06, 0.75, 1.0)),
+        "left_forearm": point_along((0.10, -0.25, -1.0)),
+        "right_upper_arm": point_along((0.06, -0.35, -1.0)),
+        "right_forearm": point_along((0.10, -0.10, -1.0)),
+    },
     Posture.ARMS_RAISED: {
         "left_upper_arm": point_along((0.20, 0.28, 1.0)),
         "left_forearm": point_along((0.25, -0.05, -1.0)),
@@ -248,11 +282,21 @@ _CHANGES: dict[Posture, dict[str, Vector]] = {
         "right_forearm": point_along((0.16, 0.05, -1.0)),
     },
 }
-RISE_S = 0.6  # time to sit down, to rise, or to change any other posture
+RISE_S = 0.6  # time to sit down, to rise, or to change most other postures
+_SLOW_S = 2.0  # time to lie down, and to get up from the floor
 # The wave of a calling person; with the left arm, as bags are carried in the right hand.
 WAVE_RAD, WAVE_HZ = math.radians(20.0), 1.2
 # [fractions of stature] forward shift of pelvis and trunk that keeps the body above its feet.
-_PELVIS_SHIFT = {Posture.SITTING: -0.13, Posture.BENDING: -0.075}
+_PELVIS_SHIFT = {
+    Posture.SITTING: -0.13,
+    Posture.BENDING: -0.075,
+    Posture.CROUCHING: -0.08,
+    Posture.LYING: -0.45,
+    Posture.FALLEN: 0.45,
+}
+_ON_THE_FLOOR = (Posture.LYING, Posture.FALLEN)
+DOWN = (Posture.SITTING, *_ON_THE_FLOOR)
+"""Postures in which a person neither turns nor stoops."""
 
 
 def _both_sides(left: dict[str, Vector]) -> Array:
@@ -273,10 +317,12 @@ def standing_rotations() -> Array:
 
 
 def posture_rotations(posture: Posture) -> Array:
-    """Return (17, 3) [rad] rotation vectors of the bones in a posture; feet stay level."""
+    """Return (17, 3) [rad] rotation vectors of the bones in a posture; feet stay level on the floor."""
     rotations = _both_sides({**_STANDING, **_CHANGES[posture]})
     if posture is Posture.ARMS_CROSSED:
         _cross_forearms(rotations)
+    if posture in _ON_THE_FLOOR:
+        return rotations
     for side in ("left", "right"):
         leg = [BONE_INDEX[f"{side}_{bone}"] for bone in ("thigh", "shin")]
         rotations[BONE_INDEX[f"{side}_foot"], 1] = -rotations[[0, *leg], 1].sum()
@@ -305,3 +351,9 @@ def turned_back(rotation: Array, direction: Array) -> Vector:
 def pelvis_shift(posture: Posture) -> float:
     """Return the forward shift of the pelvis [fractions of stature]."""
     return _PELVIS_SHIFT.get(posture, 0.0)
+
+
+def change_times_s(posture: Posture) -> tuple[float, float]:
+    """Return the times [s] to take up a posture, and to leave it."""
+    taken_up_s = _SLOW_S if posture is Posture.LYING else RISE_S
+    return taken_up_s, _SLOW_S if posture in _ON_THE_FLOOR else RISE_S

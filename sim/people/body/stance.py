@@ -13,10 +13,10 @@ from peopleboy.sim.people.body.skeleton import (
     ARM_BONES,
     BONE_INDEX,
     BONES,
-    RISE_S,
     WAVE_HZ,
     WAVE_RAD,
     Posture,
+    change_times_s,
     pelvis_shift,
     posture_rotations,
 )
@@ -63,6 +63,7 @@ STANCE: Final = np.dtype(
 _STANDING, _CALLING = POSTURES[Posture.STANDING], POSTURES[Posture.CALLING]
 _ROTATIONS = np.array([posture_rotations(posture) for posture in Posture])
 _SHIFTS = np.array([pelvis_shift(posture) for posture in Posture])
+_CHANGE_S = np.array([change_times_s(posture) for posture in Posture])  # to take up and to leave each
 _ARMS = np.array(ARM_BONES, np.int64)
 _BAG_ARM = np.array([BONE_INDEX[f"right_{bone}"] for bone in ("upper_arm", "forearm", "hand")], np.int64)
 _FEET = np.array([BONE_INDEX["left_foot"], BONE_INDEX["right_foot"]], np.int64)
@@ -134,10 +135,10 @@ def move_limbs(
     walking_hz = stance.speed / (unit_stride_m * amplitude) if amplitude > 1e-3 else 0.0
     turning_hz = 0.0 if is_walking else _CYCLES_PER_RAD * abs(turn_rad_s)
     stance.phase = (stance.phase + max(walking_hz, turning_hz) * dt_s) % 1.0
-    step = dt_s / RISE_S
     for k in range(len(stance.blend)):
         wanted = 1.0 if k == posture else 0.0
-        stance.blend[k] += min(max(wanted - stance.blend[k], -step), step)
+        more, less = dt_s / _CHANGE_S[k, 0], dt_s / _CHANGE_S[k, 1]
+        stance.blend[k] += min(max(wanted - stance.blend[k], -less), more)
 
 
 @njit(cache=True, nogil=True)

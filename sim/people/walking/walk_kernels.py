@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import fma, remainder
-from peopleboy.sim.people.body.skeleton import RISE_S, Posture
+from peopleboy.sim.people.body.skeleton import DOWN, Posture, change_times_s
 from peopleboy.sim.people.body.stance import POSTURES
 from peopleboy.sim.people.walking.script import (
     ABSENT,
@@ -50,8 +50,10 @@ _START_WITHIN_RAD: Final = math.radians(25.0)
 _ERRAND_M_S: Final = 1.2  # walking speed off the script
 _NEARLY_M: Final = 0.1  # distance to the goal of an errand at which a person has arrived
 _SIDESTEP_M: Final = 0.8  # last part of an errand, on which a person keeps facing its target
-_STANDING, _SITTING = POSTURES[Posture.STANDING], POSTURES[Posture.SITTING]
+_STANDING = POSTURES[Posture.STANDING]
+_KEEPS_HEADING = np.array([posture in DOWN for posture in Posture])
 _CALLING = POSTURES[Posture.CALLING]
+_RISE_S = np.array([change_times_s(posture)[1] for posture in Posture])
 
 
 @njit(cache=True, nogil=True)
@@ -184,8 +186,8 @@ def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMoti
         _turn(walk, dt_s, walk.heading if faces == NOTHING else _faced(walk, faces, waypoint, robot))
         return False
     if walk.posture != _STANDING:
+        walk.on_feet_in = _RISE_S[walk.posture]
         walk.posture = _STANDING
-        walk.on_feet_in = RISE_S
     walk.on_feet_in -= dt_s
     following = scripts.waypoints[scripts.first_waypoint[q] + walk.reached + 1]
     bearing = _bearing(walk, following.at[0], following.at[1])
@@ -229,7 +231,7 @@ def _halt(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotio
         walk.velocity[1] *= walk.speed / length
     walk.position[0] += walk.velocity[0] * dt_s
     walk.position[1] += walk.velocity[1] * dt_s
-    if walk.speed == 0.0 and walk.posture != _SITTING:
+    if walk.speed == 0.0 and not _KEEPS_HEADING[walk.posture]:
         wanted = walk.heading
         if walk.has_face:
             wanted = _bearing(walk, walk.faces[0], walk.faces[1])
@@ -250,8 +252,8 @@ def _turn_to_the_way(walk: Record, scripts: Scripts, q: int, dt_s: float) -> Non
 def _stray(walk: Record, scripts: Scripts, q: int, dt_s: float, obstacles: Obstacles, two: float) -> None:
     """Leave the path of the script for a point on the floor."""
     if walk.posture != _STANDING:
+        walk.on_feet_in = _RISE_S[walk.posture]
         walk.posture = _STANDING
-        walk.on_feet_in = RISE_S
     walk.is_astray, walk.is_turned_away, walk.is_homing, walk.piece = True, False, False, -1
     walk.on_feet_in -= dt_s
     distance = _gap(walk, walk.goes_to[0], walk.goes_to[1])

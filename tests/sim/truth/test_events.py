@@ -16,6 +16,7 @@ class Seen:
     name: str = "a"
     inside_fraction: float = 1.0
     hidden_by: Mapping[str, float] = field(default_factory=dict)
+    posture: str = "standing"
 
     @property
     def visible_fraction(self) -> float:
@@ -50,6 +51,14 @@ def play(world: SimulatedWorld, steps: int, command: tuple[float, float] = (0.0,
         events += log.update(world.truth())
         world.step(*command)
     return events
+
+
+def test_a_fall_is_an_event_once_each_time_and_lying_there_from_the_start_is_none() -> None:
+    postures = ("fallen", "fallen", "standing", "fallen", "fallen", "standing", "lying", "fallen")
+    instants = [Instant(k / 15.0, (Seen(posture=posture),)) for k, posture in enumerate(postures)]
+    log = EventLog()
+    falls = [event.time_s for instant in instants for event in log.update(instant) if event.kind == "falls"]
+    assert falls == [3 / 15.0, 7 / 15.0]
 
 
 def test_an_occlusion_is_told_from_its_start_to_its_end() -> None:

@@ -146,6 +146,52 @@ def test_a_seated_person_is_lower_and_a_bent_one_reaches_forward():
     assert bending[:, 2].max() < 1.3
 
 
+def test_a_crouching_person_stays_above_the_feet_and_is_as_low_as_a_seated_one():
+    crouching = in_posture(Posture.CROUCHING)
+    points, feet = person_points(crouching), person_points(crouching, ["left_foot", "right_foot"])
+    assert points[:, 2].min() == pytest.approx(0.0, abs=0.005)
+    assert points[:, 2].max() / person_points(in_posture(Posture.STANDING))[:, 2].max() < 0.72
+    trunk = person_points(crouching, TORSO_PARTS)[:, 0].mean()
+    assert feet[:, 0].min() < trunk < feet[:, 0].max()
+
+
+@pytest.mark.parametrize("posture", [Posture.LYING, Posture.FALLEN])
+@pytest.mark.parametrize(("sex", "build"), BODIES)
+def test_a_person_on_the_floor_rests_on_it_at_full_length(posture, sex, build):
+    person = in_posture(posture, sex=sex, build=build, height_m=1.7, clothes=BARE)
+    points, trunk = person_points(person), person_points(person, [*TORSO_PARTS, "head"])
+    assert trunk[:, 2].min() == pytest.approx(0.0, abs=0.02)
+    assert points[:, 2].min() > -0.06
+    assert points[:, 2].max() < 0.45
+    assert 1.6 < np.ptp(points[:, 0]) < 2.2
+
+
+def test_lying_faces_up_and_a_fall_ends_face_down():
+    for posture, sign in ((Posture.LYING, 1.0), (Posture.FALLEN, -1.0)):
+        joints = dict(zip(JOINT_NAMES, in_posture(posture).joints(), strict=True))
+        hips = (joints["left_hip"] + joints["right_hip"]) / 2
+        assert joints["nose"][0] * sign < hips[0] * sign
+        assert (joints["nose"][2] > joints["left_ear"][2]) == (posture is Posture.LYING)
+
+
+def test_a_fall_is_fast_and_getting_up_is_slow():
+    path = (
+        Waypoint(at_m=(0.0, 0.0)),
+        Waypoint(at_m=(1.0, 0.0), pause_s=3.0, posture=Posture.FALLEN),
+        Waypoint(at_m=(3.0, 0.0)),
+    )
+    person = make_person(path=path)
+    heads = np.array([(person.joints()[0, 2], *person.velocity) for _ in walk(person, 9.0, dt=1 / 60)])
+    tall = heads[:, 0].max()
+    down = np.flatnonzero(heads[:, 0] < 0.3)
+    before = np.flatnonzero(heads[: down[0], 0] > 0.95 * tall)[-1]
+    after = down[-1] + np.flatnonzero(heads[down[-1] :, 0] > 0.95 * tall)[0]
+    assert 0.2 < (down[0] - before) / 60 < 0.6
+    assert 0.8 < (after - down[-1]) / 60 < 2.1
+    moving = np.hypot(heads[:, 1], heads[:, 2]) > 0.0
+    assert not moving[down[0] : after - 10].any()
+
+
 def test_raised_arms_reach_above_the_head_and_crossed_arms_lie_on_the_chest():
     raised, crossed = in_posture(Posture.ARMS_RAISED), in_posture(Posture.ARMS_CROSSED)
     hands = ["left_hand", "right_hand"]
