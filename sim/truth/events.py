@@ -70,7 +70,7 @@ class EventLog:
         return [Event(time_s=truth.time_s, kind=kind, person=who, other=other) for kind, who, other in found]
 
     def _fall(self, person: PersonTruth) -> list[_Reported]:
-        """Report the start of a fall, in view or not; a person who lies there from the start has not fallen."""
+        """Report the start of a fall, in view or not; lying there from the start is no fall."""
         name, was_upright = person.name, person.name in self._upright
         if person.posture != Posture.FALLEN:
             self._upright.add(name)
