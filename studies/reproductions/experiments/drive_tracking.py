@@ -57,6 +57,12 @@ TURNS: Final = "fast_turn"
 
 DEFAULT, LITERAL = "default", "as printed"
 FILTERS: Final = "particle filters"
+CENTIMETRES: Final = "as printed, rows of 1 cm"
+ANY_SCORE: Final = "as printed, windows from score 0"
+BOTH: Final = "as printed, rows of 1 cm, windows from score 0"
+STANDARD: Final = "as printed, OpenCV's far detector"
+PRINTED_CHOICES: Final = (LITERAL, CENTIMETRES, ANY_SCORE, BOTH, STANDARD)
+"""The tracker as printed, and other readings of what is not printed."""
 NO_CONNECTOR, NO_ODOMETRY = "no connector", "no odometry"
 NO_WALLS: Final = "walls left in"
 NO_DEPTH: Final = "no depth in the filters"
@@ -84,6 +90,12 @@ COLOUR_ONLY: Final = replace(PARTICLES, sees_depth=False, least_far_score=0.5, l
 
 FILTERS_CHOICES: Final[Mapping[str, RgbdConfig]] = {
     LITERAL: PRINTED,
+    CENTIMETRES: replace(PRINTED, above=replace(PRINTED.above, row_m=0.01)),
+    ANY_SCORE: replace(PRINTED, least_far_score=0.0, least_near_score=0.0),
+    BOTH: replace(
+        PRINTED, above=replace(PRINTED.above, row_m=0.01), least_far_score=0.0, least_near_score=0.0
+    ),
+    STANDARD: replace(PRINTED, least_far_score=0.0),
     FILTERS: PARTICLES,
     "no verification": replace(PARTICLES, has_verification=False),
     "no sharpening": replace(PARTICLES, filter=replace(PARTICLES.filter, sharpness=0.0)),
@@ -91,7 +103,7 @@ FILTERS_CHOICES: Final[Mapping[str, RgbdConfig]] = {
     "no see-through": replace(PARTICLES, hypotheses=replace(PARTICLES.hypotheses, has_see_through=False)),
     NO_DEPTH: replace(PARTICLES, filter=replace(PARTICLES.filter, kernel_m=1000.0)),
 }
-"""The thesis's tracker with particle filters, as printed, improved, and variants of the improved one."""
+"""The thesis's tracker with particle filters, as printed and improved, and variants of both."""
 
 CHOICES: Final = (*SENSORS, *FILTERS_CHOICES)
 """All trackers, by the name used in tables."""
@@ -130,7 +142,8 @@ def make_choice(name: str, rng: np.random.Generator) -> Tracker:
     """Create a tracker, one of `CHOICES`."""
     if name in FILTERS_CHOICES:
         config = FILTERS_CHOICES[name]
-        return RgbdTracker(config, shipped_windows(sees_depth=config.sees_depth), rng)
+        windows = people_detector() if name == STANDARD else shipped_windows(sees_depth=config.sees_depth)
+        return RgbdTracker(config, windows, rng)
     model = people_detector() if name == OPENCV else shipped_windows(sees_depth=name != COLOUR_WINDOWS)
     tracker = PeopleTracker((DepthSensor(SENSORS[name], RGBD, model),), RGBD)
     return _WithoutOdometry(tracker) if name == NO_ODOMETRY else tracker

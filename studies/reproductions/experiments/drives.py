@@ -15,6 +15,7 @@ from peopleboy.studies.reproductions.experiments.drive_tracking import (
     LITERAL,
     NO_CONNECTOR,
     NO_ODOMETRY,
+    PRINTED_CHOICES,
     SETS,
     TURNS,
     set_name,
@@ -30,7 +31,10 @@ MAIN: Final = (DEFAULT, LITERAL)
 ABLATED: Final = (4, 6, 7, 10, 11, 12)
 """Numbers of the sets for comparing trackers that differ in one setting."""
 NOISIEST: Final = 3.0
+SOURCE_NOISE: Final = 4.0
+"""Scale of the depth noise that is nearest to the source's: 5.7 at 3.5 m, and 3.5 at 10 m."""
 _FOLLOWED: Final = 2  # number of the set in which the robot follows a person
+_BY_NOISE: Final = {1.0: CHOICES, SOURCE_NOISE: PRINTED_CHOICES}  # trackers of ablations
 _RANGES_M: Final = {"up to 3 m": (0.0, 3.0), "3 to 5 m": (3.0, 5.0), "5 to 10 m": (5.0, 10.0)}
 
 Value = Callable[[TrackingRecord], float]
@@ -210,15 +214,15 @@ def play_drives(using: Measurement, wanted: Mapping[str, tuple[str, float]]) -> 
 
 
 def drive_units(plan: Plan, kind: str, scale: float) -> dict[str, list[Unit]]:
-    """Return the units of drives of a kind; at normal noise, ablated drives run all trackers."""
-    names: tuple[str, ...]
+    """Return the units of drives of a kind; ablated drives run all trackers, or those of a noise."""
+    names: Sequence[str]
     if kind == "turns":
         scenarios, seeds, names = [TURNS], 2 * plan.drives, (DEFAULT, NO_ODOMETRY)
     elif kind == "sets":
         scenarios, seeds, names = [SETS[n - 1] for n in plan.sets], plan.drives, MAIN
     else:
         scenarios, seeds = [SETS[n - 1] for n in plan.sets if n in ABLATED], plan.ablated
-        names = tuple(CHOICES) if scale == 1.0 else (DEFAULT, NO_CONNECTOR)
+        names = _BY_NOISE.get(scale, (DEFAULT, NO_CONNECTOR))
     return {
         one: [Unit.of(watch_drive, one, seed, names, scale, plan.drive_s) for seed in range(seeds)]
         for one in scenarios

@@ -122,9 +122,16 @@ def look_at(view: RgbdView, places_m: Floats, body: Body, foreground_m: float) -
 def colours_in(view: RgbdView, box: Box) -> Floats:
     """Return the histogram (BINS,) of the foreground in a box (SA eq. 4.24).
 
-    Its readings are split into two clusters by depth; the nearer one is used.
+    The foreground is the largest connected part of the nearer of two clusters of depths (SA 4.4.2).
     """
-    return np.asarray(_foreground_colours(view.depth, view.colour, np.array(box), bin_of_colour()))
+    readings, bins = _readings_in(view.depth, view.colour, np.array(box), bin_of_colour())
+    if not readings.any():
+        return np.zeros(BINS)
+    is_near = (readings > 0.0) & (readings <= _between_two(readings[readings > 0.0]))
+    _, parts, boxes, _ = cv2.connectedComponentsWithStats(is_near.astype(np.uint8), connectivity=8)
+    largest = 1 + int(np.argmax(boxes[1:, cv2.CC_STAT_AREA]))
+    counts = np.bincount(bins[parts == largest], minlength=BINS)
+    return np.asarray(counts / counts.sum(), np.float64)
 
 
 @njit(cache=True, nogil=True)
@@ -216,26 +223,20 @@ def _miss(rotation: Floats, origin: Floats, place: Floats, x: float, z: float) -
 
 
 @njit(cache=True, nogil=True)
-def _foreground_colours(depth: Depth, colour: Image, box: Floats, table: NDArray[np.uint8]) -> Floats:
-    readings = np.zeros(4 * ROWS * COLUMNS)
-    bins = np.zeros(4 * ROWS * COLUMNS, np.int64)
-    n = 0
+def _readings_in(
+    depth: Depth, colour: Image, box: Floats, table: NDArray[np.uint8]
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Return depths [m], 0 for none, and colour bins of a grid of pixels in a box, both (rows, columns)."""
+    readings = np.zeros((2 * ROWS, 2 * COLUMNS))
+    bins = np.zeros((2 * ROWS, 2 * COLUMNS), np.int64)
     for row in range(2 * ROWS):
         v = int(box[1] + (row + 0.5) / (2 * ROWS) * box[3])
         for column in range(2 * COLUMNS):
             u = int(box[0] + (column + 0.5) / (2 * COLUMNS) * box[2])
             if 0 <= v < depth.shape[0] and 0 <= u < depth.shape[1] and depth[v, u] > 0:
-                readings[n] = depth[v, u] / 1000.0
-                bins[n] = bin_at(colour, v, u, table)
-                n += 1
-    counts = np.zeros(BINS)
-    if n == 0:
-        return counts
-    limit = _between_two(readings[:n])
-    near = np.flatnonzero(readings[:n] <= limit)
-    for k in near:
-        counts[bins[k]] += 1.0 / len(near)
-    return counts
+                readings[row, column] = depth[v, u] / 1000.0
+                bins[row, column] = bin_at(colour, v, u, table)
+    return readings, bins
 
 
 @njit(cache=True, nogil=True)
