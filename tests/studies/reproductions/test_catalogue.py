@@ -39,7 +39,7 @@ SITUATION = (
     *(f"table-{number}" for number in ("3.1", "4.1", "4.2", "4.3", "4.4", "4.5", "4.7", "B.1")),
     *(f"figure-{number}" for number in ("4.25", "4.26", "4.28", "4.29", "4.30", "4.33")),
     *("scene-models", "figures-3.8-3.13"),
-    *("positions", "ablations", "noise", "odometry", "pre-detection", "windows", "goals"),
+    *("positions", "ablations", "readings", "noise", "odometry", "pre-detection", "windows", "goals"),
     *("table-5.1", "attention-ways", "attention-times", "absence", "follow-absence"),
     *(f"figure-5.{number}" for number in (6, 7, 8, 9)),
 )
