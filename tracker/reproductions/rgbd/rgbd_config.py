@@ -126,6 +126,6 @@ PRINTED: Final = RgbdConfig(
 
 The source does not print the depth in a row of the view from above. With 3 cm, its longest bridged gap, ten
 rows, is as long as the sensor's step at its farthest depth of 10 m; with 1 cm, bodies and walls beyond 6 m
-fall apart into pieces of one depth each. Nor does it print the least score of a window: that of colour windows is
-used, chosen on seeds 100 and 101.
+fall apart into pieces of one depth each. Nor does it print the least score of a window: that of colour
+windows is used, chosen on seeds 100 and 101.
 """
