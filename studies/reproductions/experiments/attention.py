@@ -35,22 +35,25 @@ if TYPE_CHECKING:
     pass
 
 PRINTED_NAME: Final = "printed"
+SUMS: Final = "sums, no common range"
 MATCHING: Final = "matching maps"
 DEFAULT: Final = "default"
 
-_MEANS: Final = replace(PRINTED, share="means")
-_FREE: Final = replace(_MEANS, inhibits=False, divides_by_peaks=False)
+_FREE: Final = replace(PRINTED, inhibits=False, divides_by_peaks=False)
 _ABSOLUTE: Final = replace(_FREE, is_absolute=True)
-_ALIKE: Final = replace(_ABSOLUTE, reward="same")
+_ALIKE: Final = replace(_ABSOLUTE, reward="same", has_range=False)  # which compares deviations, of any range
 _SCALED: Final = replace(_ALIKE, scales=AttentionConfig().scales)
 _PLAIN: Final = AttentionConfig(colour=False)
 
 CHOICES: Final[Mapping[str, AttentionConfig]] = {
     PRINTED_NAME: PRINTED,
-    "means, not sums": _MEANS,
-    "nothing against the box": replace(_MEANS, keeps_negative=False),
-    "no number of peaks": replace(_MEANS, divides_by_peaks=False),
-    "no lateral inhibition": replace(_MEANS, inhibits=False),
+    "sums, not means": replace(PRINTED, share="sums"),
+    "no common range": replace(PRINTED, has_range=False),
+    SUMS: replace(PRINTED, share="sums", has_range=False),
+    "no maps": replace(PRINTED, plain=False, surround=False),
+    "nothing against the box": replace(PRINTED, keeps_negative=False),
+    "no number of peaks": replace(PRINTED, divides_by_peaks=False),
+    "no lateral inhibition": replace(PRINTED, inhibits=False),
     "neither of them": _FREE,
     "absolute score": _ABSOLUTE,
     "the same, not more": _ALIKE,
@@ -63,8 +66,8 @@ CHOICES: Final[Mapping[str, AttentionConfig]] = {
 }
 """Attention as printed, and with changed settings, by the name used in tables.
 
-Those down to "neither of them" change one setting, or both, of "means, not sums"; from there on each includes
-the changes above it. "matching maps" omits centre-surround, the two below it one more element each; the
+Those down to "neither of them" change one or two settings of the printed one; from there on each includes the
+changes above it. "matching maps" omits centre-surround, the two below it one more element each; the
 default adds the ratio of colours to it.
 """
 
@@ -80,6 +83,8 @@ GONE: Final = 0.3  # visible share below which a person is away
 OVERLAP: Final = 0.3  # minimum IoU of a track on a person
 LEAST_VISIBLE: Final = 0.1  # minimum visible share of a person with a track
 
+MAIN: Final = "1"
+"""The person who stands nearest to the robot in the scenarios of the sets, as in the thesis's videos."""
 FOCUS_SCENARIOS: Final = ("crossing_3", "same_uniform", "crowd_8", "follow_passers_by")
 FOCUS_SETS: Final = {"A": ("follow_passers_by",), "B": ("same_uniform", "crowd_8")}
 """Scenarios for the thesis's sets: a person leads the robot past others; people in equal clothes."""
@@ -96,14 +101,17 @@ LEFT_S: Final = 30.0
 
 
 def focus(using: Measurement) -> Samples:
-    """Measure how often the focus is on the learned person; a video is one person of one run (5.1)."""
+    """Measure how often the focus is on the learned person (table 5.1).
+
+    A video is one run, in which only the first person is searched for, the nearest to the robot.
+    """
     found = _focused(using)
     return {
         Line(group, name): as_columns(
-            [_focus_shares(_counts([run for scenario in scenarios for run in found[scenario]], name))]
+            [_focus_shares(_counts([run for scenario in scenarios for run in found[scenario]], name, MAIN))]
         )
         for group, scenarios in FOCUS_SETS.items()
-        for name in (PRINTED_NAME, MATCHING, DEFAULT)
+        for name in (PRINTED_NAME, SUMS, MATCHING, DEFAULT)
     }
 
 
@@ -140,9 +148,10 @@ def _focused(using: Measurement) -> dict[str, list[Result]]:
     return using.played(watch_focus, FOCUS_SCENARIOS, plan.drives, tuple(CHOICES), plan.drive_s)
 
 
-def _counts(runs: Iterable[Result], name: str) -> Floats:
-    """Return the focus counts (V, 3) of a variant, for each person of each run."""
-    return np.array([row for run in runs for row in run[name].values()], dtype=np.float64).reshape(-1, 3)
+def _counts(runs: Iterable[Result], name: str, person: str = "") -> Floats:
+    """Return the focus counts (V, 3) of a variant, for a person of each run, or for all of them."""
+    rows = [row for run in runs for key, row in run[name].items() if person in ("", key)]
+    return np.array(rows, dtype=np.float64).reshape(-1, 3)
 
 
 def absences(using: Measurement) -> Samples:

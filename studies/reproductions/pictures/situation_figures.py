@@ -69,7 +69,6 @@ _SHOWN: Final = {CLEAN: "truth", MEAN: MEAN, TRACK: TRACK, ADAPT: ADAPT, ROBUST:
 _NEAREST_M, _FARTHEST_M = 1.5, 7.0
 
 FOCUS_SCENE: Final = "crossing_3"
-_MEANS: Final = replace(PRINTED, share="means")
 _ALONE: Final = replace(AttentionConfig(), scales=(1.0,))
 
 
@@ -266,7 +265,7 @@ def learned_films(scenario: str = FOCUS_SCENE, seed: int = 1, every: int = 15) -
 def draw_excitation() -> Figure:
     """Draw excitation and inhibition of a torso, and their difference: figure 5.6."""
     first = next(learned_films())
-    sight, look = first.learned(_MEANS)
+    sight, look = first.learned(PRINTED)
     known = dict(look.parts)[TORSO]
     assert sight.maps is not None
     page = canvas(1.7)
@@ -274,7 +273,7 @@ def draw_excitation() -> Figure:
     _show_colour(image, first.moment, "image, and the learned box")
     frame_box(image, first.box, PINK, linewidth=1.3)
     excited, inhibited = (sight.maps @ one.astype(np.float32) for one in (known.excites, known.inhibits))
-    maps = (excited, inhibited, attention_map(sight, known, _MEANS))
+    maps = (excited, inhibited, attention_map(sight, known, PRINTED))
     _show_maps(axes, maps, ("a) excitation E", "b) inhibition I", "c) A = E - I, above 0"))
     return page
 
@@ -283,7 +282,7 @@ def draw_part_scores() -> Figure:
     """Draw the scores of torso, head and patterns, and of the whole person: figure 5.7."""
     first = next(learned_films())
     page = canvas(2.9)
-    variants = ((_MEANS, "as printed, means"), (_ALONE, "default"))
+    variants = ((PRINTED, "as printed"), (_ALONE, "default"))
     for (image, *row), (config, name) in zip(page.subplots(2, 5), variants, strict=True):
         focus = search(*first.learned(config), config)
         head, torso = focus.parts

@@ -15,6 +15,7 @@ class AttentionConfig:
 
     Attributes:
         inhibits: whether low neighbouring maps raise a map (equation 5.1).
+        has_range: whether each map is divided by its maximum before equation 5.3, so that all have one range.
         divides_by_peaks: whether maps with many peaks are weighted down (equation 5.3).
         plain: whether features without centre-surround are used.
         surround: whether features with centre-surround, and their three sums, are used.
@@ -41,6 +42,7 @@ class AttentionConfig:
     """
 
     inhibits: bool = False
+    has_range: bool = False
     divides_by_peaks: bool = False
     plain: bool = True
     surround: bool = False
@@ -74,12 +76,18 @@ class AttentionConfig:
 
 PRINTED: Final = AttentionConfig(
     inhibits=True,
+    has_range=True,
     divides_by_peaks=True,
     surround=True,
-    share="sums",
     reward="more",
     is_absolute=False,
     colour=False,
     scales=(1.0,),
 )
-"""Chapter 5 as printed."""
+"""Chapter 5 as printed.
+
+Equations 5.4 and 5.5 print sums, "normalised according to the complete map with the size k, l". Without the
+size of the box, each feature of a box smaller than half of the image speaks against it, and equation 5.11
+leaves nothing; in figure 5.6, the learned shirt stands out. The source's maps are images with one range of grey
+levels; without one, bright and dark outweigh the other maps many times.
+"""

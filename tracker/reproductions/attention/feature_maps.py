@@ -118,6 +118,7 @@ NAMES: Final = (
 LEVELS: Final = 6
 _SURROUND_PX: Final = 7
 _PEAK_PX: Final = 7
+_LEAST: Final = 1e-6  # maximum below which a map counts as empty
 _PEAK: Final = 0.5  # share of a map's maximum from which a peak counts
 _OPPONENTS: Final = ((0, 2), (3, 1), (8, 9))  # red and green, blue and yellow, bright and dark
 
@@ -138,6 +139,8 @@ def feature_maps(image: NDArray[np.uint8], config: AttentionConfig) -> Floats:
         for number, part in enumerate((COLOURS, ORIENTATIONS, INTENSITIES), SUMS.start):
             around = slice(SURROUND.start + part.start, SURROUND.start + part.stop)
             maps[:, :, number] = maps[:, :, around].sum(axis=2)
+    if config.has_range:
+        maps /= np.maximum(maps.max(axis=(0, 1)), _LEAST)
     return _by_peaks(maps) if config.divides_by_peaks else maps
 
 

@@ -1,9 +1,11 @@
 """Learning somebody from a box, and looking for that one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from peopleboy.tracker.reproductions.attention.attend import learn, middle_of, relearn, search
+from peopleboy.tracker.reproductions.attention.attend import attention_map, learn, middle_of, relearn, search
 from peopleboy.tracker.reproductions.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.reproductions.attention.image_sums import ImageSums
 from peopleboy.tracker.reproductions.attention.part_model import TORSO
@@ -72,8 +74,17 @@ def test_what_excites_and_what_inhibits_add_up_to_all_and_means_do_not_depend_on
     assert np.allclose(torso.excites + torso.inhibits, 1.0)
     bright = 8
     assert torso.excites[bright] == pytest.approx(0.5)
-    sums = dict(learn(ImageSums.of(flat.image, PRINTED), BOX, PRINTED).parts)[TORSO]
+    with_sums = replace(PRINTED, share="sums")
+    sums = dict(learn(ImageSums.of(flat.image, with_sums), BOX, with_sums).parts)[TORSO]
     assert sums.excites[bright] < 0.02
+
+
+def test_as_printed_the_learned_torso_stands_out_which_sums_leave_out():
+    sight = ImageSums.of(FIRST, PRINTED)
+    for share, stands_out in (("means", True), ("sums", False)):
+        config = replace(PRINTED, share=share)
+        torso = dict(learn(sight, BOX, config).parts)[TORSO]
+        assert attention_map(sight, torso, config).any() == stands_out
 
 
 def test_pixels_behind_the_person_are_no_part_of_what_is_learned():

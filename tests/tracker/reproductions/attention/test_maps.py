@@ -160,3 +160,10 @@ def test_settings_that_make_no_sense_are_refused():
         AttentionConfig(scales=(0.0,))
     with refused("rate must be in 0..1, got 2"):
         AttentionConfig(rate=2)
+
+
+def test_maps_with_a_common_range_have_their_maximum_at_one_before_the_peaks():
+    config = AttentionConfig(has_range=True)
+    image = np.random.default_rng(3).integers(0, 255, (60, 80, 3), np.uint8)
+    assert np.allclose(feature_maps(image, config)[..., :10].max(axis=(0, 1)), 1.0)
+    assert not feature_maps(plain(0, 0, 0), config)[..., 0].any()
