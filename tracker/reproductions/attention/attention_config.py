@@ -88,6 +88,6 @@ PRINTED: Final = AttentionConfig(
 
 Equations 5.4 and 5.5 print sums, "normalised according to the complete map with the size k, l". Without the
 size of the box, each feature of a box smaller than half of the image speaks against it, and equation 5.11
-leaves nothing; in figure 5.6, the learned shirt stands out. The source's maps are images with one range of grey
-levels; without one, bright and dark outweigh the other maps many times.
+leaves nothing; in figure 5.6, the learned shirt stands out. The source's maps are images with one range of
+grey levels; without one, bright and dark outweigh the other maps many times.
 """
