@@ -1,0 +1,1 @@
+"""Data for the simulator, made once from public sources."""
