@@ -30,6 +30,7 @@ from peopleboy.sim.robot.robot_body import NAME as ROBOT
 from peopleboy.sim.robot.robot_body import RADIUS_M, robot_material
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import make_shape_table
+from peopleboy.sim.shapes.skins import join_skins, pose_skins
 from peopleboy.sim.truth.scenes import SCENE, ImageFreeTruth, Records, Scenes, known_people, look_at_people
 from peopleboy.sim.truth.truth import BORDER, Box, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
@@ -276,6 +277,7 @@ class SimulatedWorld:
             config.seed,
             is_visible=config.renderer != BLIND,
             detail=config.detail,
+            bodies=config.bodies,
         )
         self._known_people = known_people(self.crowd.people)
         self._handling = Handling(physics, config.place, self.crowd.people)
@@ -291,7 +293,13 @@ class SimulatedWorld:
         part_materials = [
             robot_material(key.link_name) if key.name == ROBOT else materials[key.name] for key in keys
         ]
-        self.table = make_shape_table(physics.visual_shapes())
+        number = {key.name: part for part, key in enumerate(keys)}
+        skins = [
+            (person.skin, [number[f"{person.name}/{part.name}"] for part in person.parts])
+            for person in self.crowd.people
+            if person.skin is not None
+        ]
+        self.table, self._skins = join_skins(make_shape_table(physics.visual_shapes()), skins)
         paintings = paint_place(config.place, config.seed) if config.detail == "full" else {}
         self.materials = make_material_table(
             part_materials,
@@ -325,13 +333,15 @@ class SimulatedWorld:
     def _scene(self) -> Scene:
         """Return the scene of this instant, computed on first access."""
         if self._scene_now is None:
+            poses = self.physics.part_poses()
             self._scene_now = Scene(
                 renderer=self.config.renderer,
                 physics=self.physics,
                 table=self.table,
-                world_from_part=self.physics.part_poses(),
+                world_from_part=poses,
                 person_of_part=self._truth_maker.person_of_part,
                 hidden=self.physics.hidden_parts(),
+                skins=None if self._skins is None else pose_skins(self._skins, poses),
             )
         return self._scene_now
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.sim.cameras.kinds import check_rate
-from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.person_config import BodyShape, PersonConfig
 from peopleboy.sim.physics.physics_engine import PHYSICS, PhysicsName, default_physics
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig
@@ -26,6 +26,7 @@ class WorldConfig:
         control_hz: [Hz] commands and images.
         renderer: "raycast" or "bullet"; "none" for a world without images, which is several times faster.
         physics: "bullet", PyBullet's dynamics; or "kinematic", rolling without slip, which needs no PyBullet.
+        bodies: "capsules", or "skins" for people with the bodies of children, adults and elders.
         detail: "plain", or "full" for finely drawn people and surfaces, which make images harder.
 
     Raises:
@@ -42,6 +43,7 @@ class WorldConfig:
     renderer: str = "raycast"
     physics: PhysicsName = field(default_factory=default_physics)
     detail: Detail = "plain"
+    bodies: BodyShape = "capsules"
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide each other, and invalid seeds."""
@@ -57,5 +59,7 @@ class WorldConfig:
             raise BadInput(f"unknown physics {self.physics!r}; choose from {', '.join(PHYSICS)}")
         if self.renderer == "bullet" and self.physics != "bullet":
             raise BadInput(f"renderer 'bullet' needs physics bullet, not {self.physics}; choose raycast")
+        if self.renderer == "bullet" and self.bodies == "skins":
+            raise BadInput("renderer 'bullet' cannot draw skins; choose raycast, or bodies: capsules")
         if self.seed < 0:
             raise BadInput(f"seed {self.seed} must be 0 or more")

@@ -141,14 +141,11 @@ def _content(folder: Path, frame: int, images: str) -> bytes:
 
 
 def attributes_of(run: FinishedRun) -> dict[str, dict[str, Any]]:
-    """Return the constant attributes of each person of a run by name: sex, age, build, clothes, items.
-
-    All people are adults.
-    """
+    """Return the constant attributes of each person of a run by name: sex, age, build, clothes, items."""
     found: dict[str, dict[str, Any]] = {}
     for person in run.world.people:
         clothes = {name: worn for name, worn in asdict(person.clothes).items() if worn is not None}
-        about = {"sex": person.sex, "age": "adult", "build": person.build, "height_m": person.height_m}
+        about = {"sex": person.sex, "age": person.age, "build": person.build, "height_m": person.height_m}
         found[person.name] = about | clothes
         if run.world.detail == "full":
             outfit, _ = draw_bearing(person, appearance_stream(run.about.seed, person.name))

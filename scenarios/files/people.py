@@ -1,7 +1,7 @@
 """Keys of a scenario file for people, and what is sampled from the seed: bodies, clothes, detours."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from itertools import pairwise
 from typing import Annotated, Any, Final
@@ -15,13 +15,19 @@ from peopleboy.scenarios.files.validation import STRICT, Given
 from peopleboy.settings import Name, meaning_of
 from peopleboy.sim.people.appearance.traits import usual_clothes
 from peopleboy.sim.people.body.anthropometry import Build, Sex
+from peopleboy.sim.people.body.bodies import Age
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
 from peopleboy.sim.people.person_config import SPEEDS_M_S, ActorConfig, PersonConfig, WalkConfig, Waypoint
 from peopleboy.sim.people.walking.path import abreast
 
 # Stature of adults [m]: mean and standard deviation (NCD-RisC 2016, young adults of central Europe, rounded).
+# Older people are about 3 cm shorter; children are of 4 to 11 years: our choice.
 _STATURE_M: Final = {"female": (1.66, 0.06), "male": (1.79, 0.07)}
-_SHORTEST_M, _TALLEST_M = 1.5, 2.0
+_CHILD_M: Final = (1.25, 0.12)
+_ELDER_M: Final = -0.03
+_LIMITS_M: Final[Mapping[Age, tuple[float, float]]] = {
+    "child": (1.0, 1.5), "adult": (1.5, 2.0), "elder": (1.5, 2.0),
+}  # fmt: skip
 _BUILDS: Final = {"slim": 0.3, "average": 0.5, "stout": 0.2}
 _TRIES: Final = 50
 
@@ -67,6 +73,7 @@ class PersonSpec(ActorConfig, _Variations):
         ),
     ] = None
     height_m: Annotated[float | None, meaning_of(PersonConfig, "height_m")] = None
+    age: Annotated[Age, meaning_of(PersonConfig, "age")] = "adult"
     sex: Annotated[Sex | None, meaning_of(PersonConfig, "sex")] = None
     build: Annotated[Build | None, meaning_of(PersonConfig, "build")] = None
     clothes: Annotated[GivenClothes | None, meaning_of(PersonConfig, "clothes")] = None
@@ -192,8 +199,10 @@ def _draw_person(rng: np.random.Generator, person: PersonSpec) -> dict[str, Any]
     above = float(rng.normal())
     clothes = random_clothes(rng)
     sex = sex if person.sex is None else person.sex
-    mean, deviation = _STATURE_M[sex]
-    stature = min(max(mean + above * deviation, _SHORTEST_M), _TALLEST_M)
+    mean, deviation = _CHILD_M if person.age == "child" else _STATURE_M[sex]
+    mean += _ELDER_M if person.age == "elder" else 0.0
+    shortest, tallest = _LIMITS_M[person.age]
+    stature = min(max(mean + above * deviation, shortest), tallest)
     return {
         "sex": sex,
         "build": build if person.build is None else person.build,

@@ -164,6 +164,7 @@ class Scenario:
             renderer=renderer,
             physics=self.spec.physics,
             detail=self.spec.detail,
+            bodies=self.spec.bodies,
         )
         return config if self.episode is None else self.episode.applied_to(config)
 

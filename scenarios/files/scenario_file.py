@@ -16,6 +16,7 @@ from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.validation import STRICT
 from peopleboy.scenarios.files.variation import EpisodeSpec
 from peopleboy.settings import Seconds, Word
+from peopleboy.sim.people.person_config import BodyShape
 from peopleboy.sim.physics.physics_engine import PhysicsName, default_physics
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.place_config import PlaceConfig
@@ -185,6 +186,14 @@ class ScenarioSpec:
             "`plain` is faster, and reproduces the images of older scenario files"
         ),
     ] = "plain"
+    bodies: Annotated[
+        BodyShape,
+        Field(
+            description="shape of people. `skins` are meshes of children, adults and elders, which "
+            "pinhole cameras see; panoramic cameras, laser scanners and mirrors see capsules in their place. "
+            "The trackers were trained on `capsules`"
+        ),
+    ] = "capsules"
     physics: Annotated[
         PhysicsName,
         Field(

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 from peopleboy.random_streams import stream
 from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.appearance.finisher import Finisher, appearance_stream
+from peopleboy.sim.people.body.bodies import choose_body
+from peopleboy.sim.people.body.garments import bare_stature
 from peopleboy.sim.people.person import Person
-from peopleboy.sim.people.person_config import PersonConfig
+from peopleboy.sim.people.person_config import BodyShape, PersonConfig
 from peopleboy.sim.people.walking.script import (
     WALK,
     Records,
@@ -57,10 +59,12 @@ class Crowd:
         *,
         is_visible: bool,
         detail: Detail = "plain",
+        bodies: BodyShape = "capsules",
     ) -> None:
         self._physics = physics
         self._is_visible = is_visible
         self._place = place
+        self._bodies = bodies
         self._is_fine = is_visible and detail == "full"
         self.people = tuple(self._make(config, seed) for config in configs)
         self.materials: dict[str, Material] = {}
@@ -160,7 +164,13 @@ class Crowd:
 
     def _make(self, config: PersonConfig, seed: int) -> Person:
         name = f"person.{config.name}"
-        return Person(config, stream(seed, name), self._finisher(config, seed) if self._is_fine else None)
+        body = None
+        if self._bodies == "skins":
+            bare_m = bare_stature(config.height_m, config.clothes)
+            rng = stream(seed, f"{name}.body")
+            body = choose_body(config.age, config.sex, config.build, bare_m, rng)
+        finisher = self._finisher(config, seed) if self._is_fine else None
+        return Person(config, stream(seed, name), finisher, body)
 
     def _finisher(self, config: PersonConfig, seed: int) -> Finisher:
         """Return the finisher of a person, for the air of the place."""

@@ -2,16 +2,17 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.anthropometry import HAND_LENGTH, BodySize, measure
+from peopleboy.sim.people.body.bodies import RestBody
 from peopleboy.sim.people.body.body_placement import (
     BodyFrame,
-    arm_length,
+    arm_lengths,
     carry,
     least_stoop,
     put_on_floor,
@@ -22,7 +23,6 @@ from peopleboy.sim.people.body.body_shapes import ARM_PARTS as _LIMBS
 from peopleboy.sim.people.body.body_shapes import (
     BAG_PART,
     BODY_PARTS,
-    PartGeometry,
     bag,
     bone_index,
     build_body,
@@ -33,6 +33,7 @@ from peopleboy.sim.people.body.gait import Gait
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, DOWN, Posture, joint_offsets, joint_points
+from peopleboy.sim.people.body.skin import BodyPlan, dress_body
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
 from peopleboy.sim.people.conducts import ConductSituation, Mind
 from peopleboy.sim.people.person_config import Arms, PersonConfig
@@ -71,35 +72,43 @@ class _Grasp:
 
 
 class Person:
-    """A person that follows its script; a finisher adds detail to its appearance.
+    """A person that follows its script.
+
+    A finisher adds detail to its appearance; a body gives it a skin.
 
     Attributes:
         config: the settings.
         name: the configured name.
         parts: its parts, which never change; `poses` is in their order.
+        skin: the mesh that bends with the parts, or None for a person of capsules.
         stance: (1,) records STANCE, its current stance.
         walker: its movement over the floor.
         gait: its gait.
     """
 
     def __init__(
-        self, config: PersonConfig, rng: np.random.Generator, finisher: Finisher | None = None
+        self,
+        config: PersonConfig,
+        rng: np.random.Generator,
+        finisher: Finisher | None = None,
+        body: RestBody | None = None,
     ) -> None:
         self.config = config
         self.name = config.name
         self._size = measure(config.height_m, config.sex, config.build)
-        geometry = _geometry(config, self._size, NOTHING_MORE if finisher is None else finisher.outfit)
+        outfit = NOTHING_MORE if finisher is None else finisher.outfit
+        plan = _plan(config, self._size, outfit, body)
+        self.skin, geometry = plan.skin, plan.geometry
         materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
         if finisher is not None:
-            materials = finisher.finish(materials, geometry)
+            materials = finisher.finish(materials, geometry, plan.head_m)
         self.parts = tuple(Part(name=n, shapes=g.shapes, material=materials[n]) for n, g in geometry.items())
         self._part_bone = bone_index(geometry)
         self._part_offset = np.array([g.offset_m for g in geometry.values()])
-        self._joint_bone, self._joint_offset = joint_points(self._size)
-        self._offsets = joint_offsets(self._size)
-        self._supports = support_points(self._size)
+        self._joint_bone, self._joint_offset = plan.joint_bone, plan.joint_offset
+        self._offsets, self._supports, self._arm_m = plan.offsets, plan.supports, plan.arm_m
         self._manner = USUAL if finisher is None else finisher.manner
-        self.gait = Gait(self._offsets, config.height_m, self._manner)
+        self.gait = Gait(self._offsets, self._supports[:3], config.height_m, self._manner)
         leave_s = math.inf if config.leave_s is None else config.leave_s
         self.walker = Walker(config.path, config.yields, self.radius_m, (config.enter_s, leave_s))
         self._mind = Mind([waypoint.at_m for waypoint in config.path], config.reacts, config.leads)
@@ -326,11 +335,11 @@ class Person:
         bend = 0.0
         blend = self.stance["blend"][0]
         if not any(blend[POSTURES[posture]] for posture in _LOW):
-            bend = grasp.share * least_stoop(gap_m, arm_length(self.config.height_m))
+            bend = grasp.share * least_stoop(gap_m, sum(self._arm_m))
         bowed, shift = bent(bend)
         bones = self._on_the_floor(bowed, shift)
         target = bones[chest, :3, :3].T @ (grasp.point - bones[shoulder, :3, 3])
-        turned = turn_arm(bowed, grasp.side, target, self.config.height_m)
+        turned = turn_arm(bowed, grasp.side, target, self._arm_m)
         arm = [BONE_INDEX[f"{grasp.side}_{bone}"] for bone in _ARM]
         bowed[arm] += grasp.share * (turned - bowed)[arm]
         return bowed, shift
@@ -347,9 +356,22 @@ def pace_m_s(velocity: Sequence[float], turn_rad_s: float) -> float:
     return math.hypot(*velocity, _TURNING_RADIUS_M * turn_rad_s)
 
 
-def _geometry(config: PersonConfig, size: BodySize, outfit: Outfit) -> dict[str, PartGeometry]:
+def _plan(config: PersonConfig, size: BodySize, outfit: Outfit, body: RestBody | None) -> BodyPlan:
+    """Return the plan of a person of capsules, or of one with a skin on a body."""
+    own_bag = {BAG_PART: bag(_BAG_HAND, size.stature_m)} if config.bag else {}
+    if body is not None:
+        plan = dress_body(body, size, config.clothes, outfit)
+        return replace(plan, geometry=plan.geometry | own_bag)
     thickness_m = config.clothes.thickness_m()
-    parts = build_body(size, config.clothes.hair, thickness_m)
-    if config.bag:
-        parts[BAG_PART] = bag(_BAG_HAND, size.stature_m)
-    return put_on(parts, size, outfit, thickness_m)
+    parts = build_body(size, config.clothes.hair, thickness_m) | own_bag
+    joint_bone, joint_offset = joint_points(size)
+    return BodyPlan(
+        skin=None,
+        geometry=put_on(parts, size, outfit, thickness_m),
+        offsets=joint_offsets(size),
+        supports=support_points(size),
+        joint_bone=joint_bone,
+        joint_offset=joint_offset,
+        arm_m=arm_lengths(size.stature_m),
+        head_m=size.stature_m,
+    )

@@ -11,6 +11,7 @@ from pydantic import Discriminator, Field, Tag
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.settings import Name, Point, Seconds, check_limits, word_or_list
 from peopleboy.sim.people.body.anthropometry import Build, Sex
+from peopleboy.sim.people.body.bodies import Age
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.skeleton import Posture
 
@@ -150,6 +151,7 @@ class Lead:
             )
 
 
+BodyShape = Literal["capsules", "skins"]
 Arms = Literal["swinging", "crossed", "raised"]
 PostureName = Literal[*Posture]  # type: ignore[valid-type]
 Face = Annotated[Annotated[Name, Tag("word")] | Annotated[Point, Tag("list")], Discriminator(word_or_list)]
@@ -289,8 +291,15 @@ class PersonConfig(ActorConfig):
     """
 
     height_m: Annotated[
-        float, Field(ge=1.5, le=2.0, description="height from the floor to the top of the head")
+        float, Field(ge=1.0, le=2.0, description="height from the floor to the top of the head")
     ] = 1.75
+    age: Annotated[
+        Age,
+        Field(
+            description="age group; determines the default height, and the body of people with "
+            "`bodies: skins`"
+        ),
+    ] = "adult"
     sex: Annotated[Sex, Field(description="sex; determines proportions and the default height")] = "male"
     build: Annotated[Build, Field(description="body width relative to height")] = "average"
     clothes: Annotated[Clothes, Field(description="clothes of the person")] = field(default_factory=Clothes)

@@ -14,6 +14,14 @@ from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose
 from peopleboy.sim.geometry.vectors import compose
 from peopleboy.sim.rendering.render_canvas import Lens
 from peopleboy.sim.rendering.renderer import RenderPass
+from peopleboy.sim.rendering.skin_canvas import see_skins
+from peopleboy.sim.rendering.skin_rays import (
+    NO_BINS,
+    SkinBins,
+    edges_of_skins,
+    hit_skin,
+    sort_into_bins,
+)
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
@@ -30,6 +38,7 @@ _BESIDE = np.array([(-1, 0), (0, 1), (0, -1), (1, 0)])  # the nearest pixels, in
 _BOX = int(ShapeKind.BOX)
 _CAPSULE = int(ShapeKind.CAPSULE)
 _MESH = int(ShapeKind.MESH)
+_SKIN = int(ShapeKind.SKIN)
 _NONE = -1
 
 _BEHIND = 1.03  # beyond this ratio of depths, a surface is behind another over the whole pixel
@@ -48,8 +57,15 @@ def smooth(image: NDArray[np.float32], contrast: float, seen: RenderPass, camera
     if view.surface is None:
         return
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    poses = invert_pose(seen.world_from_camera) @ scene.world_from_part
-    _smooth(image, np.float32(contrast), view.part, view.surface, view.depth, scene.table, poses, lens)
+    camera_from_world = invert_pose(seen.world_from_camera)
+    poses, bins = camera_from_world @ scene.world_from_part, NO_BINS
+    if scene.skins is not None:
+        skins = scene.skins.table
+        edges = edges_of_skins(view.part, view.surface, skins.first_surface)
+        bins = sort_into_bins(skins, see_skins(scene.skins, camera_from_world), lens, edges)
+    _smooth(
+        image, np.float32(contrast), view.part, view.surface, view.depth, scene.table, poses, lens, bins
+    )  # fmt: skip
 
 
 @njit(cache=True)
@@ -69,10 +85,21 @@ def _shapes_from_camera(table: ShapeTable, camera_from_part: Array) -> Array:
 
 @njit(cache=True)
 def _pieces_of(table: ShapeTable) -> Pixels:
-    """Return the piece (M,) of each surface: itself, but for a capsule or mesh its first surface."""
+    """Return the piece (M,) of each surface.
+
+    It is the surface itself, but for a capsule or mesh its first surface, and for a skin the first of its
+    part.
+    """
     pieces = np.empty(len(table.surface_shape), np.int32)
+    of_part = np.full(table.surface_part.max() + 1 if len(pieces) else 0, np.int32(-1))
     for surface in range(len(pieces)):
         shape = table.surface_shape[surface]
+        if table.kind[shape] == _SKIN:
+            part = table.surface_part[surface]
+            if of_part[part] < 0:
+                of_part[part] = surface
+            pieces[surface] = of_part[part]
+            continue
         is_one = table.kind[shape] in (_CAPSULE, _MESH)
         pieces[surface] = table.first_surface[shape] if is_one else surface
     return pieces
@@ -110,6 +137,7 @@ def _smooth(  # noqa: C901 (in one function)
     table: ShapeTable,
     camera_from_part: Array,
     lens: Lens,
+    bins: SkinBins,
 ) -> None:
     """Cast rays on both sides of each edge, and mix the surfaces that they hit.
 
@@ -181,7 +209,11 @@ def _smooth(  # noqa: C901 (in one function)
                             if kind[s] == _MESH:
                                 seen = one
                                 break
-                            if kind[s] == _BOX:
+                            if kind[s] == _SKIN:
+                                at_u, at_v = x0 + _RAYS[k, 0], y0 + _RAYS[k, 1]
+                                here = hit_skin(bins, y0 * width + x0, table.surface_part[p], at_u, at_v)
+                                met = p
+                            elif kind[s] == _BOX:
                                 if not is_known[p]:
                                     _set_face(faces[p], p - first_surface[s], size[s], pose[s])
                                     is_known[p] = True

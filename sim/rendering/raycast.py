@@ -49,7 +49,7 @@ def draw(
     lens: Lens,
     canvas: Canvas,
 ) -> None:
-    """Draw all shapes except those of skipped parts.
+    """Draw all shapes except stand-ins, and those of skipped parts; skins are drawn by `draw_skins`.
 
     Args:
         table: the shapes.
@@ -64,7 +64,11 @@ def draw(
         part = table.part[shape]
         origin = table.part_from_shape[shape]
         middle = map_point(camera_from_part[part], origin[0, 3], origin[1, 3], origin[2, 3])
-        if skip[part] or is_outside(middle, table.reach[shape], lens.focal, borders):
+        if (
+            skip[part]
+            or table.is_stand_in[shape]
+            or is_outside(middle, table.reach[shape], lens.focal, borders)
+        ):
             continue
         compose(camera_from_part[part], table.part_from_shape[shape], canvas.pose)
         bounds = quick_bounds(table, shape, canvas.pose)
@@ -139,7 +143,7 @@ def draw_shape(table: ShapeTable, shape: int, brush: Brush) -> None:
     else:
         first, end = table.triangle_range[shape]
         for i in range(first, end):
-            _draw_triangle(table.triangles[i], surface + i - first, brush)
+            draw_triangle(table.triangles[i], surface + i - first, brush)
 
 
 @njit(cache=True, error_model="numpy")
@@ -225,7 +229,7 @@ def draw_face(size: Array, axis: int, sign: float, surface: int, brush: Brush) -
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_triangle(corners: Array, surface: int, brush: Brush) -> None:
+def draw_triangle(corners: Array, surface: int, brush: Brush) -> None:
     """Draw the front of a triangle, from which its corners are counterclockwise."""
     pose = brush.canvas.pose
     a = map_point(pose, corners[0, 0], corners[0, 1], corners[0, 2])

@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,9 +17,11 @@ from peopleboy.sim.geometry.vectors import Point, compose, cross, dot, from_each
 from peopleboy.sim.physics.physics_engine import Physics, Rasteriser
 from peopleboy.sim.rendering.raycast import draw
 from peopleboy.sim.rendering.render_canvas import Lens, make_canvas, shade
+from peopleboy.sim.rendering.skin_canvas import draw_skins, see_skins, shade_skins, skin_bounds
 from peopleboy.sim.rendering.view import NO_PERSON, Cover, View, count_cover, person_bits
 from peopleboy.sim.shapes.bounds import EMPTY, shape_bounds, unite
 from peopleboy.sim.shapes.shape_table import ShapeTable
+from peopleboy.sim.shapes.skins import PosedSkins, SkinTable
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -89,7 +91,9 @@ def render(scene: "Scene", camera: Pinhole, world_from_camera: Matrix) -> View:
     if persons.max(initial=0) >= _MOST_PEOPLE:
         raise BadInput(f"person number {persons.max()}: a view supports at most {_MOST_PEOPLE} people")
     if scene.renderer == "raycast":
-        return cast(scene.table, camera, world_from_camera, scene.world_from_part, persons, hidden)
+        return cast(
+            scene.table, camera, world_from_camera, scene.world_from_part, persons, hidden, scene.skins
+        )
     if scene.renderer == "bullet":
         if not isinstance(scene.physics, Rasteriser):
             raise BadInput("renderer 'bullet' needs physics bullet; choose raycast")
@@ -106,17 +110,24 @@ def cast(
     world_from_part: Matrix,
     person_of_part: NDArray[np.int64],
     hidden: NDArray[np.bool_],
+    skins: PosedSkins | None = None,
 ) -> View:
     """Render with the ray caster; arguments as the attributes of `Scene`."""
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    canvas = make_canvas(lens, len(table.surface_part))
-    camera_from_part = from_each(invert_pose(world_from_camera), world_from_part)
-    draw(table, camera_from_part, hidden, person_bits(person_of_part), lens, canvas)
+    canvas, bits = make_canvas(lens, len(table.surface_part)), person_bits(person_of_part)
+    camera_from_world = invert_pose(world_from_camera)
+    draw(table, from_each(camera_from_world, world_from_part), hidden, bits, lens, canvas)
+    points = None
+    if skins is not None:
+        points = see_skins(skins, camera_from_world)
+        draw_skins(skins.table, points, hidden, bits, lens, canvas)
     shape = (lens.height, lens.width)
     part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)
     normal = np.empty((*shape, 3), np.float32)
     rotation = np.ascontiguousarray(world_from_camera[:3, :3])
     shade(table.surface_part, lens, canvas, rotation, part, depth, normal)
+    if skins is not None and points is not None:
+        shade_skins(skins, points, lens, canvas, rotation, normal)
     return View(part, depth, normal, canvas.cover, canvas.surface)
 
 
@@ -147,7 +158,20 @@ def rasterise(
 # Size of an unoccluded person in the image.
 
 
-def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask) -> Array:
+class SeenSkins(NamedTuple):
+    """Skins, and their vertices (V, 3) [m] in the optical frame."""
+
+    table: SkinTable
+    points: Array
+
+
+def silhouette_bounds(
+    camera: Pinhole,
+    table: ShapeTable,
+    camera_from_part: Matrix,
+    parts: Mask,
+    skins: SeenSkins | None = None,
+) -> Array:
     """Return the rectangles around sets of parts in the image, ignoring occlusion.
 
     They may be outside the image. Points nearer than 0.05 m along the optical axis are ignored.
@@ -157,12 +181,15 @@ def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matr
         table: the world's shapes.
         camera_from_part: (P, 4, 4) poses in the optical frame.
         parts: (N, P) which parts.
+        skins: the world's skins, if there are any.
 
     Returns:
         (N, 4) left, top, right, bottom [px]; NaN for parts that are not in front of the camera.
     """
     found = np.empty((len(parts), 4))
     _bounds(table, camera_from_part, parts, found)
+    if skins is not None:
+        skin_bounds(skins.table, skins.points, parts, found)
     (u, v), focal = camera.centre_px, camera.focal_px
     found[found[:, 0] > found[:, 2]] = math.nan
     bounds: Array = (u, v, u, v) + focal * found
@@ -170,7 +197,12 @@ def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matr
 
 
 def silhouette_area(
-    camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask, bounds: Sequence[float]
+    camera: Pinhole,
+    table: ShapeTable,
+    camera_from_part: Matrix,
+    parts: Mask,
+    bounds: Sequence[float],
+    skins: SeenSkins | None = None,
 ) -> int:
     """Count the pixels of parts (P,), ignoring occlusion and the image's border.
 
@@ -188,6 +220,8 @@ def silhouette_area(
     canvas = make_canvas(lens, len(table.surface_part))
     bits = np.ones(len(parts), np.uint64)
     draw(table, camera_from_part, ~parts, bits, lens, canvas)
+    if skins is not None:
+        draw_skins(skins.table, skins.points, ~parts, bits, lens, canvas)
     return int(np.count_nonzero(canvas.cover))
 
 
@@ -207,7 +241,7 @@ def _bounds(table: ShapeTable, camera_from_part: Array, parts: Mask, found: Arra
         wanted = False
         for n in range(len(parts)):
             wanted |= parts[n, part]
-        if not wanted:
+        if not wanted or table.is_stand_in[shape]:
             continue
         compose(camera_from_part[part], table.part_from_shape[shape], pose)
         first, end = table.triangle_range[shape]
@@ -229,6 +263,7 @@ class Scene:
         world_from_part: (P, 4, 4).
         person_of_part: (P,) number of the person that a part belongs to, -1 for none.
         hidden: (P,) absent parts.
+        skins: skins at that instant; None if there are none.
     """
 
     renderer: str
@@ -237,6 +272,7 @@ class Scene:
     world_from_part: Matrix
     person_of_part: NDArray[np.int64]
     hidden: Mask
+    skins: PosedSkins | None = None
 
     def without(self, parts: Mask) -> "Scene":
         """Return the scene without some parts (P,), such as those through which light passes."""
@@ -289,7 +325,8 @@ class PinholeRenderer(Renderer):
 
     def __init__(self) -> None:
         # Poses in a camera's frame for each scene in use, since all boxes of a scene need them.
-        self._poses: WeakKeyDictionary[Scene, dict[bytes, Matrix]] = WeakKeyDictionary()
+        self._poses: WeakKeyDictionary[Scene, dict[bytes, tuple[Matrix, SeenSkins | None]]]
+        self._poses = WeakKeyDictionary()
 
     def view(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix) -> View:
         """Render with the scene's renderer."""
@@ -297,19 +334,24 @@ class PinholeRenderer(Renderer):
 
     def bounds(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> Matrix:
         """See `silhouette_bounds`."""
-        return silhouette_bounds(camera, scene.table, self._before(scene, world_from_camera), parts)
+        poses, skins = self._before(scene, world_from_camera)
+        return silhouette_bounds(camera, scene.table, poses, parts, skins)
 
     def area(
         self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask, bounds: Sequence[float]
     ) -> int:
         """See `silhouette_area`."""
-        return silhouette_area(camera, scene.table, self._before(scene, world_from_camera), parts, bounds)
+        poses, skins = self._before(scene, world_from_camera)
+        return silhouette_area(camera, scene.table, poses, parts, bounds, skins)
 
-    def _before(self, scene: Scene, world_from_camera: Matrix) -> Matrix:
-        """Return the poses (P, 4, 4) of a scene's parts in a camera's frame."""
+    def _before(self, scene: Scene, world_from_camera: Matrix) -> tuple[Matrix, SeenSkins | None]:
+        """Return the poses (P, 4, 4) of a scene's parts in a camera's frame, and its skins there."""
         known, key = self._poses.setdefault(scene, {}), world_from_camera.tobytes()
         if key not in known:
-            known[key] = invert_pose(world_from_camera) @ scene.world_from_part
+            camera_from_world, skins = invert_pose(world_from_camera), None
+            if scene.skins is not None:
+                skins = SeenSkins(scene.skins.table, see_skins(scene.skins, camera_from_world))
+            known[key] = camera_from_world @ scene.world_from_part, skins
         return known[key]
 
 

@@ -70,7 +70,7 @@ def shape_bounds(kind: int, size: Array, pose: Array, triangles: Array) -> Bound
         for j in range(3):
             a, b = triangles[i, j], triangles[i, (j + 1) % 3]
             ends = map_point(pose, a[0], a[1], a[2]), map_point(pose, b[0], b[1], b[2])
-            bounds = unite(bounds, _segment(ends[0], ends[1]))
+            bounds = unite(bounds, segment_bounds(ends[0], ends[1]))
     return bounds
 
 
@@ -98,12 +98,12 @@ def box_bounds(pose: Array, x0: float, y0: float, z0: float, x1: float, y1: floa
     for i in range(8):
         for axis in range(3):
             if (i >> axis) & 1 == 0:
-                bounds = unite(bounds, _segment(corners[i], corners[i | (1 << axis)]))
+                bounds = unite(bounds, segment_bounds(corners[i], corners[i | (1 << axis)]))
     return bounds
 
 
 @njit(cache=True)
-def _segment(a: Point, b: Point) -> Bounds:
+def segment_bounds(a: Point, b: Point) -> Bounds:
     """Return the bounds of a line segment."""
     if a[2] < NEAR_M and b[2] < NEAR_M:
         return EMPTY

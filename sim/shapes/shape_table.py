@@ -34,6 +34,7 @@ class VisualShape:
         part: index into `Bullet.parts()`.
         kind, size, mesh: as in `Shape`.
         part_from_shape: (4, 4) pose of the shape in its part's frame.
+        is_stand_in: as in `Shape`.
     """
 
     part: int
@@ -41,12 +42,13 @@ class VisualShape:
     size: Vector
     part_from_shape: Matrix
     mesh: Path | None
+    is_stand_in: bool = False
 
 
 def as_given(shape: Shape, part: int) -> VisualShape:
     """Return a shape for the part with a number."""
     pose = pose_matrices(shape.position, shape.orientation)
-    return VisualShape(part, shape.kind, shape.size, pose, shape.mesh)
+    return VisualShape(part, shape.kind, shape.size, pose, shape.mesh, shape.is_stand_in)
 
 
 class ShapeTable(NamedTuple):
@@ -61,6 +63,7 @@ class ShapeTable(NamedTuple):
         triangles: (T, 3, 3) [m] corners, in the part's frame.
         extent: (S, 2, 3) [m] least and greatest corner of a mesh, in the part's frame; 0 for other shapes.
         reach: (S,) [m] largest distance of a shape's points from the origin of its frame, inf for a plane.
+        is_stand_in: (S,) shapes that pinhole cameras do not see, as they see a skin instead.
         first_surface: (S,) number of the shape's first surface.
         surface_part: (M,) number of the part that a surface belongs to.
         surface_shape: (M,) number of the shape that a surface belongs to.
@@ -74,6 +77,7 @@ class ShapeTable(NamedTuple):
     triangles: NDArray[np.float64]
     extent: NDArray[np.float64]
     reach: NDArray[np.float64]
+    is_stand_in: NDArray[np.bool_]
     first_surface: NDArray[np.int64]
     surface_part: NDArray[np.int32]
     surface_shape: NDArray[np.int32]
@@ -100,6 +104,7 @@ def make_shape_table(shapes: Sequence[VisualShape]) -> ShapeTable:
         triangles=np.concatenate([np.zeros((0, 3, 3)), *meshes]),
         extent=extent,
         reach=np.array([_reach(shape, own) for shape, own in zip(shapes, extent, strict=True)], np.float64),
+        is_stand_in=np.array([shape.is_stand_in for shape in shapes], np.bool_),
         first_surface=np.cumsum([0, *counts])[:-1].astype(np.int64),
         surface_part=np.repeat(part, counts).astype(np.int32),
         surface_shape=np.repeat(np.arange(len(shapes)), counts).astype(np.int32),
@@ -180,6 +185,7 @@ def table_of(joined: JoinedTables, number: int) -> ShapeTable:
         arrays.triangles[t:t_end],
         arrays.extent[s:s_end],
         arrays.reach[s:s_end],
+        arrays.is_stand_in[s:s_end],
         arrays.first_surface[s:s_end],
         arrays.surface_part[m:m_end],
         arrays.surface_shape[m:m_end],

@@ -20,7 +20,7 @@ UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 class ShapeKind(IntEnum):
-    """The primitive shapes that both renderers support."""
+    """The primitive shapes that both renderers support, and skins, which only the ray caster draws."""
 
     SPHERE = 0
     CAPSULE = 1
@@ -28,6 +28,7 @@ class ShapeKind(IntEnum):
     BOX = 3
     PLANE = 4
     MESH = 5
+    SKIN = 6  # see `skins`
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +43,7 @@ class Shape:
         position: [m] origin of the shape in the part's frame.
         orientation: x, y, z, w quaternion, part from shape.
         mesh: OBJ, STL or DAE file of a mesh; None otherwise.
+        is_stand_in: whether it stands in for a skin, where skins are not drawn.
     """
 
     kind: ShapeKind
@@ -49,6 +51,7 @@ class Shape:
     position: Vector = (0.0, 0.0, 0.0)
     orientation: Quaternion = UPRIGHT
     mesh: Path | None = None
+    is_stand_in: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

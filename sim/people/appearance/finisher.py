@@ -121,16 +121,19 @@ class Finisher:
         self._worn = {part: (g, name) for g, name in worn for part in g.covers if name != "bald"}
         self._worn |= dict.fromkeys(self.outfit.covers, self._worn["chest"])
         self._fit = {name: _FIT * float(np.clip(rng.normal(), -2.0, 2.0)) for name in names}
-        self._stature_m = config.height_m
         self._hair = "cap" if self.outfit.headgear != "none" else clothes.hair
         self._bag_rgb = COLOURS[str(rng.choice(_BAG_COLOURS))]
         self._loss = wind_loss(float(rng.uniform(*_WIND_M_S))) if is_outdoors else 1.0
         self._air_c, self._rng = air_c, rng
 
     def finish(
-        self, materials: Mapping[str, Material], geometry: Mapping[str, PartGeometry]
+        self, materials: Mapping[str, Material], geometry: Mapping[str, PartGeometry], head_m: float
     ) -> dict[str, Material]:
-        """Add detail to the materials that `dress` returns, for parts of the given shapes."""
+        """Add detail to the materials that `dress` returns, for parts of the given shapes.
+
+        Face and hair are those of a person of the stature `head_m`.
+        """
+        self._stature_m = head_m
         skin_rgb, hair_rgb = materials["head"].rgb, materials["hair"].rgb
         materials = {**materials, **dict.fromkeys(self.outfit.covers, materials["chest"])}
         brows = COLOURS["dark_brown"] if self._hair in ("bald", "cap") else hair_rgb

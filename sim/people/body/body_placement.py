@@ -114,9 +114,9 @@ _BOW = posture_rotations(Posture.BENDING) - posture_rotations(Posture.STANDING)
 _KNEES = _bent_knees()
 
 
-def arm_length(stature_m: float) -> float:
-    """Return the distance from the shoulder to the middle of the palm [m]."""
-    return (UPPER_ARM_LENGTH + FOREARM_LENGTH + _PALM * HAND_LENGTH) * stature_m
+def arm_lengths(stature_m: float) -> tuple[float, float]:
+    """Return the distances from shoulder to elbow and from there to the middle of the palm [m]."""
+    return UPPER_ARM_LENGTH * stature_m, (FOREARM_LENGTH + _PALM * HAND_LENGTH) * stature_m
 
 
 def stoop(share: float) -> tuple[Array, float]:
@@ -149,19 +149,19 @@ def least_stoop(gap_m: Callable[[float], float], arm_m: float) -> float:
     return high
 
 
-def turn_arm(rotations: Array, side: str, target: Array, stature_m: float) -> Array:
+def turn_arm(rotations: Array, side: str, target: Array, arm_m: tuple[float, float]) -> Array:
     """Turn an arm so that its palm is at a point, or points at it if it is out of reach.
 
     Args:
         rotations: (17, 3) [rad] rotation vectors of the bones; not changed.
         side: "left" or "right".
         target: (3,) [m] from the shoulder, in the chest's frame.
-        stature_m: [m] stature of the person.
+        arm_m: [m] as returned by `arm_lengths`.
 
     Returns:
         (17, 3) [rad] the rotations with the arm turned, by the law of cosines.
     """
-    upper, lower = UPPER_ARM_LENGTH * stature_m, (FOREARM_LENGTH + _PALM * HAND_LENGTH) * stature_m
+    upper, lower = arm_m
     far = max(float(np.linalg.norm(target)), 1e-6)
     along = target / far
     reach = min(max(far, 1.02 * abs(upper - lower)), 0.999 * (upper + lower))

@@ -119,14 +119,14 @@ def _hair(h: float, breadth: float, front: float, crown: float, hair: str) -> tu
     skull = capsule(((breadth - front) * h, 0.0, z * h), (rim * h, 0.0, z * h), breadth * h)
     nape = capsule((-0.017 * h, 0.0, z * h), (-0.017 * h, 0.0, 0.018 * h), (breadth - 0.007) * h)
     if hair == "long":
-        return (skull, nape, *(_strand(h, z, lateral(side)) for side in SIDES))
+        return (skull, nape, *(strand(h, z, lateral(side)) for side in SIDES))
     if hair == "cap":
         peak = box(((front + 0.012) * h, 0.0, (z - 0.002) * h), (0.062 * h, 0.072 * h, 0.006 * h))
         return (skull, nape, peak)
     return (skull, nape)
 
 
-def _strand(h: float, z: float, side: float) -> Shape:
+def strand(h: float, z: float, side: float) -> Shape:
     """Make one of two locks of hair that fall to the shoulders from mid-height of the skull."""
     return capsule(
         (-0.020 * h, side * 0.018 * h, z * h), (-0.030 * h, side * 0.022 * h, -0.062 * h), 0.033 * h

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.body.body_shapes import SIDES, sole_points
+from peopleboy.sim.people.body.body_shapes import SIDES
 from peopleboy.sim.people.body.manner import USUAL, Manner, bearing
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral, standing_rotations
 
@@ -131,10 +131,9 @@ class Gait:
     follow by inverse kinematics.
     """
 
-    def __init__(self, offsets: Array, stature_m: float, manner: Manner = USUAL) -> None:
-        self._offsets = offsets
+    def __init__(self, offsets: Array, soles: Array, stature_m: float, manner: Manner = USUAL) -> None:
+        self._offsets, self._soles = offsets, soles
         self._manner, self._stature_m = manner, stature_m
-        self._soles = sole_points(stature_m)
         leg = -offsets[BONE_INDEX["left_shin"], 2] - offsets[BONE_INDEX["left_foot"], 2]
         self._scale = leg / CLIP_LEG_M
         self.root_scale = math.sqrt(self._scale)

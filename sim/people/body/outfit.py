@@ -15,6 +15,7 @@ from peopleboy.sim.people.body.body_shapes import (
     box,
     capsule,
     sphere,
+    strand,
 )
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.skeleton import ATLAS_HEIGHT, lateral
@@ -134,7 +135,7 @@ def put_on(
         shapes[f"{side}_forearm"] = _cuff(h, outfit.sleeve_m, shapes[f"{side}_forearm"])
     worn = {name: replace(part, shapes=shapes[name]) for name, part in parts.items()}
     if outfit.carried != "nothing":
-        worn[BAG_PART] = _carried(size, outfit, thickness_m.get("chest", 0.0))
+        worn[BAG_PART] = carried_bag(size, outfit, thickness_m.get("chest", 0.0))
     return worn
 
 
@@ -196,6 +197,22 @@ def _head(size: BodySize, outfit: Outfit, hair: tuple[Shape, ...]) -> tuple[Shap
     return (*mop, *_tied(h, (back, z), outfit.hairdo), *((brim,) if outfit.headgear == "hat" else ()))
 
 
+def headgear_shapes(size: BodySize, outfit: Outfit, hair: str) -> tuple[Shape, ...]:
+    """Make what stands off the head of a skinned person: a peak, a brim, or tied or long hair."""
+    h = size.stature_m
+    breadth, front = size.girths.head_breadth / 2.0 * h, size.girths.head_length / 2.0 * h
+    back, z = breadth - front, (1.0 - ATLAS_HEIGHT) * h - breadth
+    if outfit.headgear == "hood":
+        return ()
+    brim = Shape(kind=ShapeKind.CYLINDER, size=(0.012, 0.085 * h, 0.0), position=(0.0, 0.0, z + 0.016 * h))
+    shapes = _tied(h, (back, z), outfit.hairdo) + ((brim,) if outfit.headgear == "hat" else ())
+    if hair == "long" and outfit.hairdo == "plain":
+        shapes += tuple(strand(h, z, lateral(side)) for side in SIDES)
+    if hair == "cap":
+        shapes += (box((front + 0.018 * h, 0.0, z + 0.022 * h), (0.062 * h, 0.072 * h, 0.006 * h)),)
+    return shapes
+
+
 def _mop(h: float, breadth: float, at: tuple[float, float], thick: float) -> tuple[Shape, ...]:
     """Make hair of a given thickness [m], half as thick on top; the face stays bare."""
     back, z = at
@@ -224,7 +241,7 @@ def _hood(h: float, breadth: float, back: float, z: float) -> tuple[Shape, ...]:
     return (capsule((back, 0.0, z), (0.010 * h, 0.0, z), breadth + _HOOD_M), *sides, nape)
 
 
-def _carried(size: BodySize, outfit: Outfit, cloth: float) -> PartGeometry:
+def carried_bag(size: BodySize, outfit: Outfit, cloth: float) -> PartGeometry:
     """Make a rucksack, or a bag at the hip or in a hand."""
     h, g, y = size.stature_m, size.girths, lateral(outfit.side)
     if outfit.carried == "rucksack":

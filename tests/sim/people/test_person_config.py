@@ -26,7 +26,7 @@ HERE = (Waypoint(at_m=(0.0, 0.0)),)
     ("settings", "named"),
     [
         ({"name": ""}, ("name",)),
-        ({"height_m": 1.4}, ("person 'ann'.height_m: must be at least 1.5, got 1.4",)),
+        ({"height_m": 0.9}, ("person 'ann'.height_m: must be at least 1, got 0.9",)),
         ({"height_m": 2.1}, ("height_m: must be at most 2, got 2.1",)),
         ({"height_m": math.nan}, ("height_m", "nan")),
         ({"sex": "x"}, ("sex 'x'", "female, male")),

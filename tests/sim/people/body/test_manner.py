@@ -28,7 +28,8 @@ EMPTY_HANDS = {"carried": "nothing"}
 
 
 def gait(manner: Manner, stature_m: float = 1.75) -> Gait:
-    return Gait(joint_offsets(measure(stature_m, "male", "average")), stature_m, manner)
+    offsets = joint_offsets(measure(stature_m, "male", "average"))
+    return Gait(offsets, sole_points(stature_m), stature_m, manner)
 
 
 def manners(count: int) -> list[Manner]:
