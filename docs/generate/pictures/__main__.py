@@ -24,7 +24,7 @@ from docs.generate.pictures import (
 )
 from docs.generate.pictures.front import runs
 from docs.generate.pictures.paper import COLOURS, save
-from docs.generate.pictures.worlds import detections, hard_scenes, light, reactions
+from docs.generate.pictures.worlds import detections, hard_scenes, light, reactions, skins
 from peopleboy.studies.reproductions.pictures.panoramic_figures import draw_features
 from peopleboy.studies.reproductions.pictures.situation_figures import draw_part_scores
 
@@ -40,6 +40,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "thermal_faults": thermal.faults,
     "people_finely": thermal.finely,
     "light": light.light,
+    "skins": skins.skins,
     "hard_scenes": hard_scenes.hard_scenes,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
@@ -65,7 +66,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
 }
 
 # Pictures for which fewer colours are sufficient.
-FEWER_COLOURS = {"first_run": 80, "panorama": 96, "scene_model": 192}
+FEWER_COLOURS = {"first_run": 80, "panorama": 96, "scene_model": 192, "skins": 96}
 
 for name in sys.argv[1:] or PICTURES:
     print(save(PICTURES[name](), FOLDER / f"{name}.png", FEWER_COLOURS.get(name, COLOURS)))
