@@ -66,7 +66,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
 }
 
 # Pictures for which fewer colours are sufficient.
-FEWER_COLOURS = {"first_run": 80, "panorama": 96, "scene_model": 192, "skins": 96}
+FEWER_COLOURS = {"first_run": 80, "panorama": 96, "scene_model": 192, "skins": 48}
 
 for name in sys.argv[1:] or PICTURES:
     print(save(PICTURES[name](), FOLDER / f"{name}.png", FEWER_COLOURS.get(name, COLOURS)))
