@@ -154,6 +154,22 @@ def test_every_table_and_figure_of_a_source_is_listed(source: str, wanted: Seque
     assert {what for what in listed if not what.startswith("section")} == set(wanted)
 
 
+def test_every_table_of_the_thesis_on_situation_awareness_and_its_figures_with_results_are_listed() -> None:
+    text = " ".join(item.what for item in PAPERS["situation"].contents)
+    tables = ["3.1", *(f"4.{k}" for k in range(1, 8)), "5.1", "B.1"]
+    assert re.findall(r"tables? ([\w.]+)", text) == tables
+    figures = [
+        re.findall(r"[\dAB]\.\d+", item.what)
+        for item in PAPERS["situation"].contents
+        if "figure" in item.what
+    ]
+    first_and_last = [(each[-2] if len(each) > 1 else each[0], each[-1]) for each in figures]
+    chapters = [(a.split(".")[0], int(a.split(".")[1]), int(b.split(".")[1])) for a, b in first_and_last]
+    covered = {(chapter, k) for chapter, a, b in chapters for k in range(a, b + 1)}
+    lasts = {"1": 2, "2": 15, "3": 13, "4": 33, "5": 9, "A": 3, "B": 17}
+    assert covered == {(chapter, k) for chapter, last in lasts.items() for k in range(1, last + 1)}
+
+
 def test_what_is_listed_here_is_what_is_measured() -> None:
     here = {number for source in PAPERS.values() for item in source.contents for number in item.here}
     assert here == {number for number in EXPERIMENTS if PAPERS[paper_of(number)].contents}
