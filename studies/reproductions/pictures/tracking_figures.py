@@ -33,7 +33,7 @@ from peopleboy.tracker.reproductions.contour.explanation import Ellipse
 from peopleboy.tracker.reproductions.contour.measurement.likelihood import ContourModel
 from peopleboy.tracker.reproductions.contour.measurement.section_evidence import outline
 from peopleboy.tracker.reproductions.contour.particles import CROWN, FOOT, H, Y, draw_around, draw_prior
-from peopleboy.tracker.reproductions.contour.variants import THESIS
+from peopleboy.tracker.reproductions.contour.variants import THESIS, THESIS_SINGLE
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]
@@ -276,7 +276,7 @@ def draw_fitness() -> Figure:
     left, right = page.subplots(1, 2, sharey=True)
     for axes, (title, found) in zip((left, right), kinds.items(), strict=True):
         images = [one.frame.grey(THERMAL) for one in found[:_IMAGES]]
-        prior = (THESIS.detector.count, images[0].shape, THESIS.motion, THESIS.detector)
+        prior = (THESIS_SINGLE.detector.count, images[0].shape, THESIS_SINGLE.motion, THESIS_SINGLE.detector)
         fits = [fitness_grey(image, draw_prior(*prior, rng)) for image in images]
         axes.hist(np.concatenate(fits), bins=np.arange(-42, 43, 2).tolist(), log=True, color=ORANGE)
         axes.axvline(_THRESHOLD_GREY, color=BLACK, linestyle="--", linewidth=1)
@@ -301,9 +301,9 @@ def draw_cues() -> Figure:
 def fitness_grey(thermal: NDArray[np.uint8], state: NDArray[np.float32]) -> Floats:
     """Return the fitness (N,) of samples (N, 9) in grey: equation 4.3, with the literal tracker's cap."""
     height, width = thermal.shape
-    model = ContourModel.build((height, width), THESIS.contour)
+    model = ContourModel.build((height, width), THESIS_SINGLE.contour)
     differences = model.differences(model.prepare(thermal), state).astype(np.float64)
-    return np.asarray(differences @ model.weights * THESIS.contour.saturation_grey)
+    return np.asarray(differences @ model.weights * THESIS_SINGLE.contour.saturation_grey)
 
 
 def _cues(moment: Moment) -> Iterator[tuple[float, float, float, float]]:
