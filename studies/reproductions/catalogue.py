@@ -92,6 +92,8 @@ class Item(Strict):
 class Source(Strict):
     """A thesis or paper."""
 
+    title: str
+    """short name on the page"""
     about: str
     """description"""
     contents: Annotated[tuple[Item, ...], Field(strict=False)] = ()
