@@ -61,8 +61,8 @@ def smooth(image: NDArray[np.float32], contrast: float, seen: RenderPass, camera
     poses, bins = camera_from_world @ scene.world_from_part, NO_BINS
     if scene.skins is not None:
         skins = scene.skins.table
-        edges = edges_of_skins(view.part, view.surface, skins.first_surface)
-        bins = sort_into_bins(skins, see_skins(scene.skins, camera_from_world), lens, edges)
+        edges, count = edges_of_skins(view.part, view.surface, skins.first_surface)
+        bins = sort_into_bins(skins, see_skins(scene.skins, camera_from_world), lens, edges, count)
     _smooth(
         image, np.float32(contrast), view.part, view.surface, view.depth, scene.table, poses, lens, bins
     )  # fmt: skip
@@ -211,7 +211,7 @@ def _smooth(  # noqa: C901 (in one function)
                                 break
                             if kind[s] == _SKIN:
                                 at_u, at_v = x0 + _RAYS[k, 0], y0 + _RAYS[k, 1]
-                                here = hit_skin(bins, y0 * width + x0, table.surface_part[p], at_u, at_v)
+                                here = hit_skin(bins, x0, y0, table.surface_part[p], at_u, at_v)
                                 met = p
                             elif kind[s] == _BOX:
                                 if not is_known[p]:
