@@ -2,13 +2,14 @@
 
 `python -m benchmarks.speed.full_detail [SCENARIO...]` prints a row for each scenario, by descending cost; the
 default are all scenarios of the library in full detail. `--renderers` instead compares the ray caster, in
-plain and in full detail, with TinyRenderer in a corridor with four people.
+plain and in full detail, with TinyRenderer in a corridor with four people. `--bodies` compares people of
+capsules with skins, in both details; the default is crossing_4.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 import click
 from rich.console import Console
@@ -37,6 +38,8 @@ GOAL = 1.5
 
 PLAIN, FULL = "plain", "full"
 RAYCAST, BULLET = "raycast", "bullet"
+CAPSULES: Final = "capsules"
+SKINS: Final = "skins"
 TRUTH = ", truth"  # suffix: only one view and its truth
 PRESET = "uncooled"  # electronics of the thermal camera in full detail, unless the scenario has its own
 SEED = 0
@@ -64,6 +67,17 @@ def detail_times(name: str, instants: int | None = None) -> Turns:
     commands = _commands(full, instants)
     with SimulatedWorld(plain.world(SEED)) as plain_world, SimulatedWorld(full.world(SEED)) as full_world:
         return _timed({PLAIN: plain_world, FULL: full_world}, commands)
+
+
+def body_times(name: str, detail: str, instants: int | None = None) -> Turns:
+    """Run a scenario with people of capsules and with skins, as `detail_times` does with both details."""
+    scenario = in_detail(name, detail)
+    commands, world = _commands(scenario, instants), scenario.world(SEED)
+    with (
+        SimulatedWorld(replace(world, bodies=CAPSULES)) as capsules,
+        SimulatedWorld(replace(world, bodies=SKINS)) as skins,
+    ):
+        return _timed({CAPSULES: capsules, SKINS: skins}, commands)
 
 
 def render_times(instants: int = 40) -> Turns:
@@ -152,14 +166,24 @@ def _renderer_lines() -> Iterator[str]:
     yield f"full detail: {found.median(FULL):.2f} ms, {found.ratio(FULL, RAYCAST):.2f} times as long"
 
 
+def _body_lines(names: Sequence[str], instants: int | None) -> Iterator[str]:
+    for name in names or ["crossing_4"]:
+        for detail in (PLAIN, FULL):
+            found = body_times(name, detail, instants)
+            capsules_ms, skins_ms = found.median(CAPSULES), found.median(SKINS)
+            times = f"{found.ratio(SKINS, CAPSULES):.2f} times as long"
+            yield f"{name}, {detail}: capsules {capsules_ms:.2f} ms, skins {skins_ms:.2f} ms, {times}"
+
+
 @click.command()
 @click.argument("scenarios", nargs=-1)
 @click.option("--instants", type=click.IntRange(1), help="Number of timed instants.  [default: all]")
 @click.option("--renderers", is_flag=True, help="Compare renderers in a corridor instead.")
-def main(scenarios: Sequence[str], instants: int | None, *, renderers: bool) -> None:
+@click.option("--bodies", is_flag=True, help="Compare the shapes of people instead.")
+def main(scenarios: Sequence[str], instants: int | None, *, renderers: bool, bodies: bool) -> None:
     """Print CPU times of SCENARIOS in plain and in full detail; the default are all in full detail."""
-    if renderers:
-        for line in _renderer_lines():
+    if renderers or bodies:
+        for line in _renderer_lines() if renderers else _body_lines(scenarios, instants):
             click.echo(line)
         return
     names = scenarios or [name for name in library() if load_scenario(name).spec.detail == FULL]
