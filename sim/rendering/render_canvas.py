@@ -46,7 +46,7 @@ class Canvas(NamedTuple):
         surface: (H, W) its number.
         cover: (H, W) bits of the people whose silhouettes include the pixel.
         shading: (M, 7) data for the normal of surface m: for a plane the normal and zeros; for a quadric its
-            axis (0 for a sphere), q, and 1 / radius.
+            axis (0 for a sphere), q, and 1 / radius. All surfaces of skins, which come last, share row M - 1.
         edges: (6, 3) buffer for the edges of one polygon: inside, edge . d >= 0 for all of them.
         pose: (3, 4) buffer for the pose of one shape, camera from shape.
     """
@@ -99,7 +99,7 @@ def pixels(lens: Lens, bounds: Bounds) -> Rectangle:
 @njit(cache=True, error_model="numpy")
 def set_shading(canvas: Canvas, surface: int, first: Point, second: Point, curvature: float) -> None:
     """Store the data for a surface's normals; see `Canvas`."""
-    row = canvas.shading[surface]
+    row = canvas.shading[min(surface, len(canvas.shading) - 1)]
     for i in range(3):
         row[i], row[3 + i] = first[i], second[i]
     row[6] = curvature
@@ -271,7 +271,7 @@ def _face_row(lens: Lens, v: int, canvas: Canvas, rotation: Array, normal: NDArr
             continue
         while end < lens.width and surfaces[end] == surface and nearness[end] != 0.0:
             end += 1
-        shading = canvas.shading[surface]
+        shading = canvas.shading[min(surface, len(canvas.shading) - 1)]
         if shading[6] == 0.0:
             nx, ny, nz = _turned(rotation, (shading[0], shading[1], shading[2]))
             for u in range(np.uint64(first), np.uint64(end)):

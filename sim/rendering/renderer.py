@@ -114,7 +114,7 @@ def cast(
 ) -> View:
     """Render with the ray caster; arguments as the attributes of `Scene`."""
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    canvas, bits = make_canvas(lens, len(table.surface_part)), person_bits(person_of_part)
+    canvas, bits = make_canvas(lens, _shadings(table, skins)), person_bits(person_of_part)
     camera_from_world = invert_pose(world_from_camera)
     draw(table, from_each(camera_from_world, world_from_part), hidden, bits, lens, canvas)
     points = None
@@ -129,6 +129,11 @@ def cast(
     if skins is not None and points is not None:
         shade_skins(skins, points, lens, canvas, rotation, normal)
     return View(part, depth, normal, canvas.cover, canvas.surface)
+
+
+def _shadings(table: ShapeTable, skins: "PosedSkins | SeenSkins | None") -> int:
+    """Return the number of rows of a canvas's shading."""
+    return len(table.surface_part) if skins is None else skins.table.first_surface + 1
 
 
 def rasterise(
@@ -217,7 +222,7 @@ def silhouette_area(
         return 0
     u, v = camera.centre_px
     lens = Lens(camera.focal_px, u - left, v - top, right - left + 1, bottom - top + 1)
-    canvas = make_canvas(lens, len(table.surface_part))
+    canvas = make_canvas(lens, _shadings(table, skins))
     bits = np.ones(len(parts), np.uint64)
     draw(table, camera_from_part, ~parts, bits, lens, canvas)
     if skins is not None:

@@ -54,6 +54,7 @@ def draw_skins(
     for k in range(len(skins.part_of_bone)):
         most = max(most, skins.first_vertex[k + 1] - skins.first_vertex[k])
     image = np.empty((most, 3))
+    set_shading(canvas, skins.first_surface, _NOTHING, _NOTHING, 0.0)  # `shade_skins` follows
     for k in range(len(skins.part_of_bone)):
         first, end = skins.first_vertex[k], skins.first_vertex[k + 1]
         near = _project(points[first:end], lens, image)
@@ -118,7 +119,6 @@ def _fill(
     az, bz, cz = image[a, 2], image[b, 2] - image[a, 2], image[c, 2] - image[a, 2]
     slope_u = (cz * (by - ay) - bz * (cy - ay)) * scale
     slope_v = (bz * (cx - ax) - cz * (bx - ax)) * scale
-    set_shading(canvas, surface, _NOTHING, _NOTHING, 0.0)
     own = np.int32(surface)
     for v in range(first_row, last_row + 1):
         low, high = _cross(ax, ay, bx, by, float(v), least, most)
