@@ -44,6 +44,9 @@ ALL: Final = "all"
 
 MEAN, MPIX, TRACK, ADAPT = "MEAN", "MPIX", "TRACK", "ADAPT"
 """Models as printed."""
+TRUE_PEOPLE: Final = "ADAPT, true people"
+"""ADAPT with the true pixels of people instead of those of tracked ellipses."""
+_EDGE: Final = np.ones((5, 5), np.uint8)  # margin around true people, for mixed and smoothed readings
 ROBUST, NO_HEAT = "robust", "robust, without heat"
 """PeopleBoy's own model, with and without the thermal image."""
 PRINTED: Final = (MEAN, MPIX, TRACK, ADAPT)
@@ -87,7 +90,7 @@ def scene_models(using: Measurement) -> Samples:
         for is_chair, group in ((False, preset), (True, f"{preset}, chairs")):
             names = [name for name in plan.scenes if (name in CHAIRS) == is_chair]
             found = using.played(watch_scene, names, plan.scene_seeds, preset)
-            for model in (ADAPT, *OURS) if names else ():
+            for model in (ADAPT, TRUE_PEOPLE, *OURS) if names else ():
                 rows = (_scene_scores(runs, model) for runs in zip(*found.values(), strict=True))
                 result[Line(group, model)] = as_columns(rows)
     return result
@@ -116,9 +119,10 @@ def _scene_scores(runs: Sequence[Result], model: str) -> Row:
 
 
 def make_model(name: str) -> SceneModel | PrintedSceneModel:
-    """Create a scene model, one of `PRINTED` or `OURS`."""
-    if name in PRINTED:
-        return PrintedSceneModel(VARIANTS[name.lower()], stream(0, "scene.particles"))
+    """Create a scene model, one of `PRINTED` or `OURS`, or `TRUE_PEOPLE`."""
+    if name in (*PRINTED, TRUE_PEOPLE):
+        variant = ADAPT if name == TRUE_PEOPLE else name
+        return PrintedSceneModel(VARIANTS[variant.lower()], stream(0, "scene.particles"))
     return SceneModel(SceneConfig(people=PeopleMaskConfig(has_heat=name != NO_HEAT)))
 
 
@@ -131,7 +135,7 @@ class _Watcher:
     """A scene model with its results, score and time."""
 
     def __init__(self, name: str) -> None:
-        self._model = make_model(name)
+        self._name, self._model = name, make_model(name)
         self.timed = Stopwatch()
         self.scene: VistaScene | None = None
         self.happenings: list[Happening] = []
@@ -139,7 +143,11 @@ class _Watcher:
         self.pixels = {kind: np.zeros(3, np.int64) for kind in ("people", "things")}
 
     def update(self, frame: Frame, masks: Mapping[str, Bools], truth: Truth) -> None:
-        scene = self.scene = self.timed(partial(self._model.update, frame))
+        update: Callable[[], VistaScene] = partial(self._model.update, frame)
+        if self._name == TRUE_PEOPLE and isinstance(self._model, PrintedSceneModel):
+            people_px = cv2.dilate((truth.instance > 0).astype(np.uint8), _EDGE) > 0
+            update = partial(self._model.update, frame, people_px)
+        scene = self.scene = self.timed(update)
         people = [(one.name, truth.robot.to_local(one.position_m)) for one in truth.people]
         self.identities.look([(one.id, one.place_m) for one in scene.persons], people)
         self.happenings += scene.happenings
@@ -173,7 +181,7 @@ def watch_scene(sequence: str, seed: int, preset: str) -> Result:
         BadInput: the scenario has no frames.
     """
     scenario = with_preset(load_scenario(SEQUENCES[sequence]), preset)
-    names = (*PRINTED, *OURS) if preset == TOF else (MEAN, ADAPT, *OURS)
+    names = (*PRINTED, TRUE_PEOPLE, *OURS) if preset == TOF else (MEAN, ADAPT, TRUE_PEOPLE, *OURS)
     watchers = {name: _Watcher(name) for name in names}
     backgrounds, log, events = Backgrounds(), ThingLog(), list[TrueEvent]()
     last = None

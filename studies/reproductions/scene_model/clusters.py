@@ -6,6 +6,8 @@ import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.ndimage import median_filter
 
 from peopleboy.studies.reproductions.scene_model.printed_config import PrintedConfig
 from peopleboy.tracker.frame import DEPTH, Floats, Frame
@@ -49,7 +51,6 @@ class CloudMaker:
 
     def __init__(self, config: PrintedConfig) -> None:
         self._config = config
-        self._flow = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_FAST)
         self._before: Cloud | None = None
 
     def __call__(self, frame: Frame, geometry: Geometry) -> Cloud:
@@ -64,7 +65,7 @@ class CloudMaker:
         points = origin + geometry.rays * depth[:, :, None]
         velocity = np.zeros_like(points)
         if self._before is not None:
-            flow = self._flow.calc(grey, self._before.grey, np.zeros((*grey.shape, 2), np.float32))
+            flow = _flow(grey, self._before.grey, config=self._config)
             velocity = _smoothed(_ways(points, depth, self._before.points_m, self._before.depth_m, flow))
         self._before = Cloud(depth, points, velocity, grey)
         return self._before
@@ -73,12 +74,32 @@ class CloudMaker:
 def _cleaned(depth: NDArray[np.uint16], amplitude: Metres, config: PrintedConfig) -> Metres:
     """Smooth (H, W) depths [mm], nearer ones more; drop dark and mixed readings (SA 3.3)."""
     fine, coarse = (cv2.medianBlur(depth, size) for size in (3, 5))
-    smooth = np.where(fine < 1000.0 * config.near_m, coarse, fine).astype(np.float32) / np.float32(1000.0)
+    coarsest = median_filter(depth, 7, mode="nearest")  # OpenCV's median of 16 bits has no 7 x 7 pixels
+    near_mm, nearest_mm = 1000.0 * config.near_m, 1000.0 * config.nearest_m
+    smooth = np.select([fine < nearest_mm, fine < near_mm], [coarsest, coarse], fine)
+    smooth = smooth.astype(np.float32) / np.float32(1000.0)
     smooth[(depth == 0) | (amplitude < config.dark * float(amplitude.mean()))] = 0.0
     return np.asarray(
         _without_flying(smooth, config.neighbours, np.float32(config.edge_m), np.float32(config.edge_share)),
         np.float32,
     )
+
+
+def _flow(grey: Grey, before: Grey, config: PrintedConfig) -> Metres:
+    """Return the displacement (H, W, 2) [px] of each pixel to the previous frame; NaN where it is unknown.
+
+    Hierarchical Lucas-Kanade (SA 3.4), for every pixel.
+    """
+    height, width = grey.shape
+    pixels = np.stack(np.meshgrid(np.arange(width), np.arange(height)), axis=2).astype(np.float32)
+    size, levels = (config.flow_px, config.flow_px), config.flow_levels - 1
+    points = pixels.reshape(-1, 1, 2)
+    places, found, _ = cv2.calcOpticalFlowPyrLK(
+        grey, before, points, np.empty_like(points), winSize=size, maxLevel=levels
+    )
+    flow = places.reshape(height, width, 2) - pixels
+    flow[found.reshape(height, width) == 0] = np.nan
+    return np.asarray(flow, np.float32)
 
 
 @njit(cache=True, nogil=True)
@@ -104,6 +125,8 @@ def _ways(points, depth, before, depth_before, flow):  # type: ignore[no-untyped
     ways = np.zeros((height, width, 3), np.float32)
     for v in range(height):
         for u in range(width):
+            if np.isnan(flow[v, u, 0]):
+                continue
             column, row = round(u + flow[v, u, 0]), round(v + flow[v, u, 1])
             if depth[v, u] <= 0.0 or not (0 <= column < width and 0 <= row < height):
                 continue
@@ -116,9 +139,6 @@ def _ways(points, depth, before, depth_before, flow):  # type: ignore[no-untyped
 def _smoothed(ways: Metres) -> Metres:
     """Apply a 5 x 5 median to each component (SA 3.4)."""
     return np.stack([cv2.medianBlur(np.ascontiguousarray(ways[:, :, k]), 5) for k in range(3)], axis=2)
-
-
-_STRIDE = 1 << 12  # between row numbers of cells, more than the cells in a row
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -143,18 +163,17 @@ class Clusters:
 
 
 def find_clusters(cloud: Cloud, candidates: Bools, config: PrintedConfig) -> Clusters:
-    """Cluster the points of a mask (H, W): moving and static points of a cell on the floor.
+    """Cluster the points of a mask (H, W) by complete linkage of positions and velocities (SA 3.5).
 
-    The source clusters hierarchically by complete linkage, with a metric and a level that it does not print,
-    into clusters that are small on purpose; cells are as small, and found in time linear in the points.
+    The source prints neither the metric nor the level: a velocity counts as a length, and no two points of a
+    cluster are farther apart than the level. The tree is built for each block of the image by itself, because
+    linkage takes time with the square of the points; the clusters are smaller than a block of a person.
     """
     pixels = np.flatnonzero(candidates & (cloud.depth_m > 0.0))
-    points = cloud.points_m.reshape(-1, 3)[pixels, :2].astype(np.float64)
-    ways = cloud.velocity_m.reshape(-1, 3)[pixels, :2].astype(np.float64)
-    is_moving = cloud.speed_m.ravel()[pixels] > config.moving_m
-    cells = np.floor(points / config.cell_m).astype(np.int64) + _STRIDE // 2
-    key = (cells[:, 0] * _STRIDE + cells[:, 1]) * 2 + is_moving
-    _, index = np.unique(key, return_inverse=True)
+    points = cloud.points_m.reshape(-1, 3)[pixels].astype(np.float64)
+    ways = cloud.velocity_m.reshape(-1, 3)[pixels].astype(np.float64)
+    data = np.hstack([points, config.velocity_weight * ways])
+    index = _linked(data, _blocks(pixels, cloud.depth_m.shape[1], config.block_px), config.level_m)
     weight = np.bincount(index).astype(np.float64)
 
     def mean(values: Floats) -> Floats:
@@ -162,5 +181,30 @@ def find_clusters(cloud: Cloud, candidates: Bools, config: PrintedConfig) -> Clu
         return np.asarray(np.stack(sums, axis=1) / weight[:, None])
 
     kept = weight >= config.least_points
-    moving = np.bincount(index, is_moving, len(weight)) > 0
-    return Clusters(mean(points)[kept], weight[kept], mean(ways)[kept], moving[kept], pixels, points)
+    velocity = mean(ways)
+    moving = np.linalg.norm(velocity, axis=1) > config.moving_m
+    return Clusters(
+        mean(points)[kept, :2], weight[kept], velocity[kept, :2], moving[kept], pixels, points[:, :2]
+    )
+
+
+def _blocks(pixels: NDArray[np.intp], width: int, side: int) -> NDArray[np.intp]:
+    """Return the number (N,) of the square block of the image in which each pixel is."""
+    rows, columns = np.divmod(pixels, width)
+    return np.asarray(rows // side * width + columns // side)
+
+
+def _linked(data: Floats, blocks: NDArray[np.intp], level: float) -> NDArray[np.intp]:
+    """Return the cluster (N,), from 0 on, of each row of data (N, 6), by complete linkage in its block."""
+    index = np.zeros(len(data), np.intp)
+    order = np.argsort(blocks, kind="stable")
+    first = np.flatnonzero(np.diff(blocks[order], prepend=-1))
+    count = 0
+    for rows in np.split(order, first[1:]) if len(order) else ():
+        if len(rows) > 1:
+            tree = linkage(data[rows], "complete")
+            index[rows] = count + fcluster(tree, level, "distance") - 1
+        else:
+            index[rows] = count
+        count = int(index[rows].max()) + 1
+    return index

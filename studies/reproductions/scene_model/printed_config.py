@@ -57,11 +57,14 @@ class PrintedConfig:
         background: which of the four.
         same_m: theta_d [m], tolerance between two equal readings; 10 cm is printed.
         moving_m: theta_v [m per frame], least motion of a moving point.
-        near_m: [m] up to which the median has 5 x 5 pixels, beyond it 3 x 3.
+        nearest_m, near_m: [m] up to which the median has 7 x 7 and 5 x 5 pixels, beyond it 3 x 3.
+        flow_px, flow_levels: [px] side of the optical flow's window, and levels of its pyramid.
         dark: share of the mean amplitude below which a reading is dropped; 0 keeps all.
         neighbours, edge_m, edge_share: a reading is kept if this many of 8 neighbours are within this [m], or
             this share of its depth.
-        cell_m: [m] side of a cluster on the ground.
+        level_m: [m] greatest distance of two points of a cluster in space and velocity.
+        velocity_weight: [m per m a frame] weight of a velocity in this distance.
+        block_px: [px] side of the blocks of the image in which points are clustered.
         least_points: of a cluster.
         detect_points, detect_m, detect_cosine: of a new object: nearby points with similar motion; 20 is
             printed.
@@ -73,12 +76,17 @@ class PrintedConfig:
     background: PrintedBackground = PrintedBackground.ADAPT
     same_m: float = 0.1
     moving_m: float = 0.03
+    nearest_m: float = 1.5
     near_m: float = 2.5
+    flow_px: int = 9
+    flow_levels: int = 3
     dark: float = 0.01
     neighbours: int = 4
     edge_m: float = 0.05
     edge_share: float = 0.03
-    cell_m: float = 0.1
+    level_m: float = 0.2
+    velocity_weight: float = 4.0
+    block_px: int = 16
     least_points: int = 3
     detect_points: int = 20
     detect_m: float = 0.3

@@ -38,8 +38,12 @@ class PrintedSceneModel:
         self._ellipses = MovingEllipses(config, rng)
         self._geometry: Geometry | None = None
 
-    def update(self, frame: Frame) -> VistaScene:
+    def update(self, frame: Frame, moving: Bools | None = None) -> VistaScene:
         """Process the next frame.
+
+        Args:
+            frame: with a depth image.
+            moving: (H, W) pixels of moving people, which replace those of tracked ellipses, for ablations.
 
         Raises:
             BadInput: there is no depth image with colours or amplitude, or no calibration.
@@ -55,7 +59,7 @@ class PrintedSceneModel:
         if config.background in (PrintedBackground.TRACK, PrintedBackground.ADAPT):
             clusters = find_clusters(cloud, self._candidates(cloud), config)
             ellipses = self._ellipses.update(clusters)
-            people = _hulls(ellipses, clusters, people)
+            people = _hulls(ellipses, clusters, people) if moving is None else moving.astype(np.int32)
             persons = tuple(_person(one) for one in ellipses)
         movable = self._learned(cloud, people > 0)
         things, objects = self._things(movable, cloud, frame.time_s)

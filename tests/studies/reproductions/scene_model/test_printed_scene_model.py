@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
+from peopleboy.studies.reproductions.scene_model.clusters import _flow, _linked
 from peopleboy.studies.reproductions.scene_model.ellipses import inside, propagated
-from peopleboy.studies.reproductions.scene_model.printed_config import VARIANTS, EllipseConfig
+from peopleboy.studies.reproductions.scene_model.printed_config import VARIANTS, EllipseConfig, PrintedConfig
 from peopleboy.studies.reproductions.scene_model.printed_model import PrintedSceneModel
 from peopleboy.tracker.frame import DEPTH_COLOUR
 from peopleboy.tracker.scene_model.scene import VistaScene
@@ -43,6 +45,34 @@ def test_adapt_keeps_the_farther_and_calls_the_nearer_movable(rng: np.random.Gen
     inner = true_depth([replace(BOX, left_m=0.2, right_m=-0.2, top_m=0.5, foot_m=0.1)])[1] > 0
     assert scene.background_m[inner] == pytest.approx(empty[inner], abs=0.01)
     assert (scene.things > 0)[inner].all() or (scene.people > 0)[inner].all()
+
+
+def test_linked_points_of_a_cluster_are_no_farther_apart_than_the_level(rng: np.random.Generator) -> None:
+    data = rng.uniform(0.0, 1.0, (300, 6))
+    blocks = np.repeat([7, 3], 150)
+    index = _linked(data, blocks, 0.6)
+    assert set(index) == set(range(index.max() + 1))
+    for one in range(index.max() + 1):
+        own = data[index == one]
+        assert np.linalg.norm(own[:, None] - own[None], axis=2).max() <= 0.6
+        assert len(set(blocks[index == one])) == 1
+
+
+def test_the_flow_finds_the_displacement_of_an_image(rng: np.random.Generator) -> None:
+    before = cv2.GaussianBlur(rng.uniform(0.0, 255.0, (80, 100)).astype(np.float32), (0, 0), 3.0)
+    before = cv2.normalize(before, None, 0, 255, cv2.NORM_MINMAX).astype(np.uint8)
+    flow = _flow(np.roll(before, (2, 3), (0, 1)), before, PrintedConfig())
+    assert np.nanmedian(flow[20:60, 20:80], axis=(0, 1)) == pytest.approx([-3.0, -2.0], abs=0.1)
+
+
+def test_given_pixels_of_people_replace_tracked_ones(rng: np.random.Generator) -> None:
+    model = PrintedSceneModel(VARIANTS["adapt"], rng)
+    frame = room_frame(0, [])
+    moving = np.zeros(true_depth([])[0].shape, np.bool_)
+    moving[50:70, 30:60] = True
+    scene = model.update(frame, moving)
+    assert ((scene.people > 0) == moving).all()
+    assert not scene.background_m[moving].any()
 
 
 def test_adapt_learns_at_once_what_is_farther(rng: np.random.Generator) -> None:
