@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.validation import STRICT, Given
 from peopleboy.settings import Name, meaning_of
-from peopleboy.sim.people.appearance.traits import usual_clothes
+from peopleboy.sim.people.appearance.traits import suit_age, usual_clothes
 from peopleboy.sim.people.body.anthropometry import Build, Sex
 from peopleboy.sim.people.body.bodies import Age
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
@@ -146,7 +146,8 @@ def resolve_person(
     drawn = _draw_person(stream(seed, f"scenario.{person.name}.looks"), person)
     if usual_air_c is not None:
         rng = stream(seed, f"scenario.{person.name}.clothes")
-        drawn["clothes"] = _keep_given(usual_clothes(rng, drawn["sex"], usual_air_c), person)
+        usual = suit_age(usual_clothes(rng, drawn["sex"], usual_air_c), person.age)
+        drawn["clothes"] = _keep_given(usual, person)
     rng = stream(seed, f"scenario.{person.name}.walk")
     delay = float(rng.uniform(0.0, person.enter_jitter_s)) if person.enter_jitter_s > 0.0 else 0.0
     later = replace(

@@ -1,12 +1,13 @@
 """Individual traits of people: usual clothes by sex and air temperature, glasses, straps, body warmth."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
 
 from peopleboy.sim.people.body.anthropometry import Sex
+from peopleboy.sim.people.body.bodies import Age
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.outfit import Outfit
 from peopleboy.sim.people.person_config import PersonConfig
@@ -59,7 +60,7 @@ def draw_traits(config: PersonConfig, outfit: Outfit, air_c: float, rng: np.rand
         nose_k=0.5 * cold_hands_k + 0.5 * _normal(rng),
         sweat=float(np.clip(0.08 * (air_c - 24.0) + 0.3 * busy_k + 0.2 * _normal(rng), 0.0, 1.0)),
         glasses=bool(rng.uniform() < _GLASSES),
-        beard=bool(rng.uniform() < _BEARD) and config.sex == "male",
+        beard=bool(rng.uniform() < _BEARD) and config.sex == "male" and config.age != "child",
         open_jacket=bool(rng.uniform() < _OPEN_JACKET),
         belt=bool(rng.uniform() < _BELT),
         phone=bool(rng.uniform() < _PHONE),
@@ -153,6 +154,16 @@ def usual_clothes(rng: np.random.Generator, sex: Sex, air_c: float) -> Clothes:
         bottom_colour=_pick(rng, _BOTTOM_COLOURS.get(bottom, _BOTTOM_COLOURS[""])),
         hair_colour="skin" if hair == "bald" else _pick(rng, _TOP_COLOURS if hair == "cap" else HAIR_COLOURS),
     )
+
+
+def suit_age(clothes: Clothes, age: Age) -> Clothes:
+    """Return clothes with the hair of an age group: no child is bald, and the hair of elders is grey."""
+    if age == "child" and clothes.hair == "bald":
+        return replace(clothes, hair="short", hair_colour="brown")
+    if age == "elder" and clothes.hair in ("short", "long"):
+        is_dark = clothes.hair_colour in ("dark_brown", "black", "grey")
+        return replace(clothes, hair_colour="grey" if is_dark else "light_grey")
+    return clothes
 
 
 def _season(rng: np.random.Generator, air_c: float) -> str:

@@ -5,7 +5,7 @@ from functools import cache
 import pytest
 
 from peopleboy.random_streams import stream
-from peopleboy.sim.people.appearance.traits import usual_clothes
+from peopleboy.sim.people.appearance.traits import suit_age, usual_clothes
 from peopleboy.sim.people.body.clothes import BOTTOMS, HAIR, SHOES, TOPS, Clothes
 from peopleboy.sim.shapes.materials import COLOURS
 
@@ -66,3 +66,13 @@ def test_most_colours_are_muted_and_everything_is_in_the_catalogue() -> None:
         assert set(Counter(getattr(each, kind) for each in clothes)) <= set(catalogue)
     assert {each.hair_colour for each in clothes} <= set(COLOURS)
     assert all(each.hair_colour == "skin" for each in clothes if each.hair == "bald")
+
+
+def test_no_child_is_bald_and_the_hair_of_elders_is_grey() -> None:
+    rng = stream(0, "ages")
+    worn = [usual_clothes(rng, "male", 21.0) for _ in range(300)]
+    assert any(one.hair == "bald" for one in worn)
+    assert not any(suit_age(one, "child").hair == "bald" for one in worn)
+    hair = {suit_age(one, "elder").hair_colour for one in worn if one.hair in ("short", "long")}
+    assert hair == {"grey", "light_grey"}
+    assert all(suit_age(one, "adult") == one for one in worn)
