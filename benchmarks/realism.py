@@ -76,6 +76,10 @@ def _in_full(data: Data) -> Data:
     return data | {"detail": "full"}
 
 
+def _with_skins(data: Data) -> Data:
+    return data | {"bodies": "skins"}
+
+
 def _as_it_is(data: Data) -> Data:
     return data
 
@@ -111,8 +115,16 @@ def steps() -> Iterator[tuple[str, list[tuple[Scenario, int]]]]:
     """Yield each step with its scenarios and seeds."""
     for name, changes in STEPS.items():
         yield name, [(_changed(scene, changes), SEED) for scene in PLAIN]
-    yield "scenes with structure", [(_changed(scene, ()), SEED) for scene in STRUCTURED]
-    yield "random worlds", [(random_scenario(seed, WORLD_S), seed) for seed in range(SEED, SEED + WORLDS)]
+    for name, change in {"": _as_it_is, " and skins": _with_skins}.items():
+        yield f"scenes with structure{name}", [(_changed(scene, (change,)), SEED) for scene in STRUCTURED]
+        worlds = ((_world(seed, change), seed) for seed in range(SEED, SEED + WORLDS))
+        yield f"random worlds{name}", list(worlds)
+
+
+def _world(seed: int, change: Change) -> Scenario:
+    """Return the first seconds of a random world, with a change."""
+    data = change(to_data(random_scenario(seed, WORLD_S).spec))
+    return parse_scenario(data, source=f"world {seed}", folder=LIBRARY)
 
 
 def film(scenarios: Sequence[tuple[Scenario, int]], folder: Path) -> None:
