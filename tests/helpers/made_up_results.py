@@ -16,7 +16,7 @@ from peopleboy.studies.reproductions.experiments.attention import CHOICES as WAY
 from peopleboy.studies.reproductions.experiments.attention import TRACKERS
 from peopleboy.studies.reproductions.experiments.drive_tracking import CHOICES
 from peopleboy.studies.reproductions.experiments.panoramic_room import CUES
-from peopleboy.studies.reproductions.experiments.scenes import CLEAN, OURS, PRINTED
+from peopleboy.studies.reproductions.experiments.scenes import CLEAN, OURS, PRINTED, TRUE_PEOPLE
 from peopleboy.studies.reproductions.experiments.sliding_windows import (
     BY_SIZE,
     FAR_SLIDES,
@@ -62,7 +62,7 @@ class MadeUp(dict[str, Result]):
         if key.startswith("score_windows "):
             return {f"{kind} {who}": {"people": [1.0, 2.0], "others": [-1.0]} for kind, who in MODELS}
         if key.startswith("watch_scene "):
-            models = (*PRINTED, *OURS)
+            models = (*PRINTED, TRUE_PEOPLE, *OURS)
             return dict.fromkeys(models, SCENE) | {"maps": dict.fromkeys((*models, CLEAN), MAP)}
         if key.startswith("compare_windows "):
             tally = {"ms": 10.0, "images": 3, "people": 4, "found": 3, "false": 5}
