@@ -32,7 +32,15 @@ from peopleboy.sim.people.body.clothes import dress
 from peopleboy.sim.people.body.gait import Gait
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, DOWN, Posture, joint_offsets, joint_points
+from peopleboy.sim.people.body.skeleton import (
+    BONE_INDEX,
+    BONES,
+    DOWN,
+    LOW,
+    Posture,
+    joint_offsets,
+    joint_points,
+)
 from peopleboy.sim.people.body.skin import BodyPlan, dress_body
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
 from peopleboy.sim.people.conducts import ConductSituation, Mind
@@ -47,7 +55,6 @@ Array = NDArray[np.float64]
 ARM_PARTS = (*_LIMBS, BAG_PART)
 PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, BAG_PART), start=1)}
 
-_LOW = (Posture.BENDING, Posture.CROUCHING, *DOWN)  # in which nothing more is bent to reach for a thing
 _ARM_POSTURES: dict[Arms, Posture | None] = {
     "swinging": None,
     "crossed": Posture.ARMS_CROSSED,
@@ -334,7 +341,7 @@ class Person:
 
         bend = 0.0
         blend = self.stance["blend"][0]
-        if not any(blend[POSTURES[posture]] for posture in _LOW):
+        if not any(blend[POSTURES[posture]] for posture in LOW):
             bend = grasp.share * least_stoop(gap_m, sum(self._arm_m))
         bowed, shift = bent(bend)
         bones = self._on_the_floor(bowed, shift)

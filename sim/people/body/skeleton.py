@@ -297,6 +297,8 @@ _PELVIS_SHIFT = {
 _ON_THE_FLOOR = (Posture.LYING, Posture.FALLEN)
 DOWN = (Posture.SITTING, *_ON_THE_FLOOR)
 """Postures in which a person neither turns nor stoops."""
+LOW = (Posture.BENDING, Posture.CROUCHING, *DOWN)
+"""Postures in which a person is not upright."""
 
 
 def _both_sides(left: dict[str, Vector]) -> Array:

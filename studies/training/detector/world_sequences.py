@@ -13,7 +13,7 @@ from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import calibrations_of
-from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.body.skeleton import LOW
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.studies.training.detector.worlds import world_of
 from peopleboy.studies.training.samples import Arrays, SampleTask
@@ -31,8 +31,6 @@ Grey = NDArray[np.uint8]
 APART_S: Final = 0.5
 """Time between two sampled images."""
 
-_LOW: Final = (Posture.SITTING, Posture.BENDING)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ThermalSequence(Arrays):
@@ -47,7 +45,7 @@ class ThermalSequence(Arrays):
         visible: (P,) visible share of the silhouette.
         inside: (P,) share of the silhouette inside the image.
         shown_px: (P,) number of visible pixels.
-        is_upright: (P,) whether the person stands or walks, and does not sit or bend.
+        is_upright: (P,) whether the person stands or walks.
     """
 
     grey: Grey
@@ -106,7 +104,7 @@ def render_thermal(scenario: Scenario, seed: int) -> ThermalSequence:
         visible=np.array([person.visible_fraction for _, person in people], np.float64),
         inside=np.array([person.inside_fraction for _, person in people], np.float64),
         shown_px=np.array([person.visible_px for _, person in people], np.float64),
-        is_upright=np.array([person.posture not in _LOW for _, person in people], np.bool_),
+        is_upright=np.array([person.posture not in LOW for _, person in people], np.bool_),
     )
 
 
