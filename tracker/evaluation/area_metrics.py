@@ -21,8 +21,7 @@ from scipy.optimize import linear_sum_assignment
 
 from peopleboy.tracker.boxes import Floats, area, cover
 from peopleboy.tracker.evaluation.box_matching import Pairs, associate
-from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.sums import Sums, percent, sum_by
+from peopleboy.tracker.evaluation.sequence import Ints, Sums, TrackBoxes, TrueBoxes, percent, sum_by
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,7 @@ from peopleboy.tracker.evaluation.latency import UNTIMED, Latency
 from peopleboy.tracker.evaluation.mot_metrics import MotMetrics, measure_mot
 from peopleboy.tracker.evaluation.ospa import SetDistances, measure_sets
 from peopleboy.tracker.evaluation.protocols import EMPTY, Surroundings
-from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.sums import Sums
+from peopleboy.tracker.evaluation.sequence import Sums, TrackBoxes, TrueBoxes
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,7 @@ import numpy as np
 
 from peopleboy.tracker.boxes import Floats, cover
 from peopleboy.tracker.evaluation.box_matching import ROUNDING, Pairs, assign
-from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.sums import Sums, sum_by
+from peopleboy.tracker.evaluation.sequence import Ints, Sums, TrackBoxes, TrueBoxes, sum_by
 
 ALPHAS = np.arange(0.05, 0.99, 0.05)  # (19,) IoU thresholds of a match
 

@@ -13,8 +13,7 @@ from scipy.optimize import linear_sum_assignment
 from peopleboy.tracker.boxes import Floats, cover
 from peopleboy.tracker.evaluation.box_matching import GATE, ROUNDING, Pairs
 from peopleboy.tracker.evaluation.hota import Hota
-from peopleboy.tracker.evaluation.sequence import Bools, Ints, TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.sums import Sums, percent
+from peopleboy.tracker.evaluation.sequence import Bools, Ints, Sums, TrackBoxes, TrueBoxes, percent
 
 # CLEAR MOT: misses, false positives and identity switches in one metric.
 

@@ -15,8 +15,7 @@ from scipy.optimize import linear_sum_assignment
 
 from peopleboy.tracker.boxes import cover
 from peopleboy.tracker.evaluation.box_matching import Pairs, assign
-from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.sums import Sums, sum_by
+from peopleboy.tracker.evaluation.sequence import Sums, TrackBoxes, TrueBoxes, sum_by
 
 
 @dataclass(frozen=True, slots=True)

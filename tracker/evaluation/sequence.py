@@ -1,4 +1,4 @@
-"""Boxes of one sequence: ground truth (`TrueBoxes`), and the output of a tracker (`TrackBoxes`)."""
+"""Boxes of one sequence: ground truth, or the output of a tracker; and sums over sequences."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -197,3 +197,26 @@ def _is_first(frame: Floats, identity: Floats) -> Bools:
     first = np.ones(len(frame), dtype=np.bool_)
     first[order[1:][repeats]] = False
     return first
+
+
+# Numerators and denominators of metrics that add up over sequences.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sums:
+    """A record of sums: adding two gives the record of both sequences combined."""
+
+    def __add__(self, other: Self) -> Self:
+        names = [field.name for field in fields(self)]
+        return type(self)(*(getattr(self, name) + getattr(other, name) for name in names))
+
+
+def percent(numerator: float, denominator: float) -> float:
+    """Return the ratio in percent, at most 100; NaN (undefined) if the denominator is 0."""
+    return min(100.0, 100.0 * numerator / denominator) if denominator else math.nan
+
+
+def sum_by(group: Ints, values: Floats, groups: int) -> Floats:
+    """Sum the values (N,) of each group: (groups,), given the group (N,) of each value."""
+    # Without values, bincount returns integers.
+    return np.bincount(group, values, groups).astype(np.float64)

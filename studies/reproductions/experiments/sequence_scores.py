@@ -22,8 +22,7 @@ from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.area_metrics import PaperMetrics, ThesisMetrics
 from peopleboy.tracker.evaluation.box_matching import GATE, associate, counts, pair_up
 from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
-from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.sums import Sums
+from peopleboy.tracker.evaluation.sequence import Sums, TrackBoxes, TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import Track, confirmed
 from peopleboy.tracker.trackers import Tracker

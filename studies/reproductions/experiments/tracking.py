@@ -16,7 +16,7 @@ from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import PAPER, THESIS
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting, changes_of
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.tracker.evaluation.sums import Sums
+from peopleboy.tracker.evaluation.sequence import Sums
 
 METRICS: Final = {"thesis": THESIS, "paper": PAPER}
 RULES: Final = {
