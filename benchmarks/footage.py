@@ -35,7 +35,9 @@ from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
+from peopleboy.tracker.evaluation.average_precision import average_precision
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 SCENES: Final = (
@@ -64,10 +66,18 @@ COLUMNS: Final[Mapping[str, str]] = {
     "CP": "{:.1f}",
     "CR": "{:.1f}",
     "one id": "{:.1f}",
+    "AP": "{:.1f}",
+    "AP50": "{:.1f}",
+    "AP50 small": "{:.1f}",
+    "AP50 medium": "{:.1f}",
+    "AP50 large": "{:.1f}",
     "false tracks per 1000": "{:.1f}",
     "frames per s": "{:.0f}",
 }
 """Format of each metric, in the order of the table."""
+
+HEIGHTS_PX: Final = {"small": (0.0, 48.0), "medium": (48.0, 96.0), "large": (96.0, math.inf)}
+"""Heights of people by size."""
 
 
 def clip_metrics(clip: RealClip, results: Sequence[ClipResult]) -> dict[str, float]:
@@ -75,10 +85,23 @@ def clip_metrics(clip: RealClip, results: Sequence[ClipResult]) -> dict[str, flo
     scores = combine([one.scores for one in results])
     found = {name: METRICS[name](scores) for name in ("HOTA", "IDF1", "MOTA", "CP")}
     found["false tracks per 1000"] = false_per_1000(scores)
+    found |= detection_metrics(clip, results[0].detections)
     if clip.given.is_single:
         found = dict.fromkeys(found, math.nan)
     found |= {name: METRICS[name](scores) for name in ("CR", "one id")}
     return found | {"frames per s": 1.0 / max(mean(one.frame_s for one in results), 1e-9)}
+
+
+def detection_metrics(clip: RealClip, detections: TrackBoxes) -> dict[str, float]:
+    """Return the average precisions of detections [%]; NaN without any people or detections."""
+    if not len(detections):
+        return dict.fromkeys(("AP", "AP50", *(f"AP50 {size}" for size in HEIGHTS_PX)), math.nan)
+    every = average_precision(clip.given.truth, detections)
+    sizes = {
+        f"AP50 {size}": average_precision(clip.given.truth, detections, heights).ap50
+        for size, heights in HEIGHTS_PX.items()
+    }
+    return {"AP": every.ap, "AP50": every.ap50, **sizes}
 
 
 def bench_clips(
@@ -176,7 +199,8 @@ def _split(clips: Mapping[str, RealClip]) -> str:
 def main(clips: Path | None, **how: Any) -> None:
     """Print metrics of the default tracker in library scenes, or of trackers and peers on clips.
 
-    Metrics are in percent. Those of --clips are also written to runs/clips.json.
+    Metrics are in percent. AP and AP50 are average precisions of the detections, by COCO's rules; people are
+    small below 48 px, and large from 96 px on. Those of --clips are also written to runs/clips.json.
     """
     if clips is not None:
         bench_clips(clips, **how)

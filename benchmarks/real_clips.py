@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from benchmarks.compare import timed_ms
-from benchmarks.peers.ours import Contestant, Ours
+from benchmarks.peers.ours import Detecting, Ours
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import ThermalViews, open_views
@@ -24,7 +24,7 @@ from peopleboy.tracker.footage.footage_truth import GivenTruth, find_truth, load
 from peopleboy.tracker.footage.image_sequences import open_footage
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 
-CHOSEN_BY: Final = ("camel_08", "camel_21")
+CHOSEN_BY: Final = ("camel_01", "camel_02", "camel_08", "camel_11", "camel_21", "llvip")
 """The clips that may be used for tuning; all others are only for evaluation."""
 TRUTH: Final = "gt.txt"
 _PEOPLE: Final = replace(RULES[Protocol.PEOPLEBOY], ignored=tuple(kind for kind in CLASSES if kind != PERSON))
@@ -96,12 +96,14 @@ class ClipResult:
     """Result of one tracker, clip and seed.
 
     Attributes:
-        scores: metrics.
+        scores: metrics of the tracks.
         frame_s: median CPU time per frame, without reading of images [s].
+        detections: all detections, before tracking; none of a tracker without any.
     """
 
     scores: Scores
     frame_s: float
+    detections: TrackBoxes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -142,16 +144,21 @@ class ClipTask:
             TrackOptions(footage=self.clip.folder, out=Path(), tracker=name, rate_hz=self.rate_hz)
         )
         rows: list[tuple[int, int, Floats]] = []
+        detected: list[tuple[int, int, Floats, float]] = []
         times_ms = []
         for number, frame in enumerate(islice(views, self.clip.frames), start=1):
             frame_ms, (boxes, ids) = timed_ms(partial(contestant.step, frame))
             times_ms.append(frame_ms)
             rows += [(number, identity, box) for box, identity in zip(boxes, ids, strict=True)]
+            if (found := contestant.detections) is not None:
+                every = enumerate(zip(found.box, found.confidence.tolist(), strict=True))
+                detected += [(number, k, box, confidence) for k, (box, confidence) in every]
             report_progress(number)
-        return ClipResult(score_clip(self.clip, rows), float(np.median(times_ms)) / 1000.0)
+        frame_s = float(np.median(times_ms)) / 1000.0
+        return ClipResult(score_clip(self.clip, rows), frame_s, TrackBoxes.from_rows(detected))
 
 
-def make_clip_tracker(name: str, seed: int) -> Contestant:
+def make_clip_tracker(name: str, seed: int) -> Detecting:
     """Make a tracker or a peer by name.
 
     Raises:
@@ -166,7 +173,7 @@ def make_clip_tracker(name: str, seed: int) -> Contestant:
     return ours
 
 
-def _peer(name: str) -> Contestant:
+def _peer(name: str) -> Detecting:
     try:
         from benchmarks.peers.contestants import make_clip_peer
     except ImportError as error:

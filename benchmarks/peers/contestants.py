@@ -1,6 +1,7 @@
 """All compared trackers by name: peers, and those of `peopleboy.tracker.trackers`."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, Final, Protocol
 
 import numpy as np
@@ -41,10 +42,11 @@ class DetectAndAssociate:
 
     def __init__(self, detector: _BoxDetector, tracker: Any) -> None:
         self._detector, self._tracker = detector, tracker
+        self.detections: PeerDetections | None = None
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
         """Detect, and associate."""
-        found = self._detector.detect(frame)
+        found = self.detections = self._detector.detect(frame)
         corners = np.concatenate([found.box[:, :2], found.box[:, :2] + found.box[:, 2:]], axis=1)
         tracked = self._tracker.update(sv.Detections(xyxy=corners, confidence=found.confidence))
         is_known = np.asarray(tracked.tracker_id).reshape(-1) >= 0
@@ -114,8 +116,11 @@ class PeerOfClips(DetectAndAssociate):
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
         """Detect, associate, and clip."""
         boxes, ids = super().step(frame)
-        height_px, width_px = frame.images[THERMAL].shape[:2]
-        return within_image(boxes, width_px, height_px), ids
+        rows, columns = frame.images[THERMAL].shape[:2]
+        assert self.detections is not None
+        inside = within_image(self.detections.box, columns, rows)
+        self.detections = replace(self.detections, box=inside)
+        return within_image(boxes, columns, rows), ids
 
 
 def make_clip_peer(enlarged: float) -> PeerOfClips:

@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from benchmarks.peers.detectors import Boxes, Oracle
-from peopleboy.tracker.boxes import iou
+from benchmarks.peers.detectors import Boxes, Oracle, PeerDetections
+from peopleboy.tracker.boxes import iou, within_image
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.footage.box_kinds import boxed_whole
+from peopleboy.tracker.footage.box_kinds import boxed_whole, whole_of
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.sensors.own_detector import OwnDetector
-from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
+from peopleboy.tracker.sensors.thermal.thermal_sensor import DetectionExplanation, ThermalSensor
 from peopleboy.tracker.track import confirmed
-from peopleboy.tracker.trackers import Tracker, make_tracker
+from peopleboy.tracker.trackers import Tracker, explanation_of, make_tracker
 from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
 _ON_PERSON: Final = 0.5  # overlap with the true box, as in the metrics
@@ -30,12 +30,22 @@ class Contestant(Protocol):
         ...
 
 
+class Detecting(Contestant, Protocol):
+    """A contestant that gives its detections, too."""
+
+    @property
+    def detections(self) -> PeerDetections | None:
+        """Detections in the last frame, before tracking; None of a tracker without any."""
+        ...
+
+
 class Ours:
     """A tracker of `peopleboy.tracker.trackers`, or one of its kind."""
 
     def __init__(self, tracker: Tracker, *, boxes_whole: bool = False) -> None:
         self._tracker = tracker
         self._boxes_whole = boxes_whole
+        self._shape = (0, 0)
 
     @classmethod
     def named(cls, name: str, seed: int, *, boxes_whole: bool = False) -> "Ours":
@@ -47,9 +57,22 @@ class Ours:
         """Names of the required cameras."""
         return self._tracker.cameras
 
+    @property
+    def detections(self) -> PeerDetections | None:
+        """Detections in the last thermal image; None of a tracker that does not explain itself by them."""
+        explained = explanation_of(self._tracker)
+        if not isinstance(explained, DetectionExplanation):
+            return None
+        boxes = explained.boxes
+        if self._boxes_whole and len(boxes):
+            rows, columns = self._shape
+            boxes = within_image(np.array([whole_of(tuple(box)) for box in boxes.tolist()]), columns, rows)
+        return PeerDetections(boxes, 1.0 / (1.0 + np.exp(-explained.scores)))
+
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
         """Update the tracker, and return the confirmed tracks."""
         tracks = self._tracker.update(frame)
+        self._shape = frame.images[THERMAL].shape[:2] if THERMAL in frame.images else self._shape
         found = list(confirmed(boxed_whole(tracks, frame) if self._boxes_whole else tracks, THERMAL))
         return np.array([box for _, box in found]).reshape(-1, 4), [track.id for track, _ in found]
 

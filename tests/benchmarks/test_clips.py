@@ -11,6 +11,8 @@ from click.testing import CliRunner, Result
 from benchmarks.footage import OUT, clip_metrics, main
 from benchmarks.real_clips import ClipResult, open_clips, score_clip
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.evaluate import Scores
+from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from tests.helpers.calls.refused import assert_names, refused
 
 FRAMES = 12
@@ -48,6 +50,12 @@ def said(*people: tuple[float, float, float, float]) -> list[tuple[int, int, np.
     ]
 
 
+def result(scores: Scores, *boxes: tuple[float, float, float, float]) -> ClipResult:
+    """A result with these detections in every frame."""
+    rows = [(frame, number, box, 1.0 / number) for frame, number, box in said(*boxes)]
+    return ClipResult(scores, 0.1, TrackBoxes.from_rows(rows))
+
+
 def call(*arguments: object) -> Result:
     return CliRunner().invoke(main, list(map(str, arguments)))
 
@@ -56,7 +64,7 @@ def test_a_bicycle_is_neither_hit_nor_miss(tmp_path: Path) -> None:
     write_clip(tmp_path / "street")
     (clip,) = open_clips(tmp_path)
     for people in ((WALKER,), (WALKER, BICYCLE)):
-        figures = clip_metrics(clip, [ClipResult(score_clip(clip, said(*people)), 0.1)])
+        figures = clip_metrics(clip, [result(score_clip(clip, said(*people)))])
         assert (figures["HOTA"], figures["CP"], figures["CR"]) == pytest.approx(
             (100.0, 100.0, 100.0), abs=0.1
         )
@@ -64,11 +72,22 @@ def test_a_bicycle_is_neither_hit_nor_miss(tmp_path: Path) -> None:
         assert figures["frames per s"] == pytest.approx(10.0)
 
 
+def test_precision_is_of_the_detections_and_by_size(tmp_path: Path) -> None:
+    write_clip(tmp_path / "street")
+    (clip,) = open_clips(tmp_path)
+    beside = (0.0, 0.0, 10.0, 20.0)
+    found = result(score_clip(clip, said(WALKER)), beside, WALKER, BICYCLE)
+    figures = clip_metrics(clip, [found])
+    assert figures["AP50"] == figures["AP"] == pytest.approx(50.0)  # nothing is said of the bicycle
+    assert figures["AP50 medium"] == 100.0
+    assert np.isnan([figures["AP50 small"], figures["AP50 large"]]).all()
+
+
 def test_a_track_on_nobody_is_false_and_counted_per_thousand_frames(tmp_path: Path) -> None:
     write_clip(tmp_path / "street")
     (clip,) = open_clips(tmp_path)
     scores = score_clip(clip, said(WALKER, (0.0, 0.0, 10.0, 20.0)))
-    metrics = clip_metrics(clip, [ClipResult(scores, 0.1), ClipResult(scores, 0.1)])
+    metrics = clip_metrics(clip, [result(scores), result(scores)])
     assert metrics["false tracks per 1000"] == pytest.approx(1000.0 / FRAMES)
     assert metrics["CP"] == pytest.approx(50.0)
 
@@ -76,7 +95,7 @@ def test_a_track_on_nobody_is_false_and_counted_per_thousand_frames(tmp_path: Pa
 def test_of_a_clip_with_one_person_annotated_nothing_is_said_of_other_boxes(tmp_path: Path) -> None:
     write_clip(tmp_path / "airfield", single=True)
     (clip,) = open_clips(tmp_path)
-    figures = clip_metrics(clip, [ClipResult(score_clip(clip, said(WALKER, BICYCLE)), 0.1)])
+    figures = clip_metrics(clip, [result(score_clip(clip, said(WALKER, BICYCLE)))])
     assert figures["one id"] == 100.0
     assert np.isnan([figures[name] for name in ("HOTA", "IDF1", "MOTA", "CP", "false tracks per 1000")]).all()
 
