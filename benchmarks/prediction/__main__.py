@@ -1,7 +1,7 @@
 """Prediction of where people walk, in unseen worlds: `python -m benchmarks.prediction`.
 
-The predictors were fitted on other random worlds and on scenarios. Each world runs once with a tracker.
-The same people are predicted from their true tracks and from those of the tracker.
+Each world runs once with a tracker. The same people are predicted from their true tracks and from those of
+the tracker.
 """
 
 from collections.abc import Mapping
@@ -13,14 +13,14 @@ import numpy as np
 
 from benchmarks import call
 from benchmarks.compare import compare, print_table, rows_of, update_results
+from benchmarks.prediction.prediction_metrics import PredictionScore, score_predictions
 from benchmarks.prediction.prediction_task import Errors, PredictionTask
 from peopleboy.scenarios.running.engine.task import chosen_workers
-from peopleboy.tracker.prediction.prediction_metrics import PredictionScore, score_predictions
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 OUT: Final = Path("runs/prediction.json")
 FIRST_WORLD: Final = 3000
-"""First of the random worlds: no predictor was fitted, and no setting chosen, on these."""
+"""First of the random worlds: no setting was chosen on these."""
 COLUMNS: Final[Mapping[str, str]] = {
     "predictions": "{:.0f}", "ADE": "{:.2f} m", "FDE": "{:.2f} m", "misses": "{:.1f} %",
     "in ellipse": "{:.1f} %",
@@ -45,7 +45,7 @@ def summarise(score: PredictionScore) -> dict[str, float | None]:
 @click.option("--tracker", default=DEFAULT_TRACKER, show_default=True, help="tracker beside the true tracks")
 @click.option("--workers", type=click.IntRange(min=1), default=None, help="processes; default one per core")
 def main(worlds: int, tracker: str, workers: int | None) -> None:
-    """Predict people in unseen worlds with every predictor; print the errors after 1, 2, 3 and 5 s.
+    """Predict people in unseen worlds; print the errors after 1, 2, 3 and 5 s.
 
     A miss is an error of more than 2 m. The results are also written to runs/prediction.json.
     """
@@ -57,7 +57,7 @@ def main(worlds: int, tracker: str, workers: int | None) -> None:
         errors = Errors(*(np.concatenate(part) for part in zip(*(one[key] for one in parts), strict=True)))
         for horizon_s, score in score_predictions(*errors).items():
             found[f"{key}, {horizon_s:g} s"] = summarise(score)
-    print_table(("predictor, tracks, after", *COLUMNS), rows_of(found, COLUMNS), width=120)
+    print_table(("tracks, after", *COLUMNS), rows_of(found, COLUMNS), width=120)
     update_results(OUT, found)
 
 

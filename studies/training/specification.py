@@ -49,10 +49,6 @@ MODELS: Final[Mapping[str, tuple[str, str]]] = {
         "legs:LegsTraining",
         "Train the networks that detect people by their legs in laser scans.",
     ),
-    "motion": (
-        "motion:MotionTraining",
-        "Train the network that predicts where people walk.",
-    ),
     "windows": (
         "windows:WindowsTraining",
         "Train the support vector machines that decide whether a window shows a person.",

@@ -4,8 +4,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from peopleboy.tracker.prediction.tracked_people import STEP_S, Floats, Forecast
+from peopleboy.tracker.prediction import Floats, Forecast
 
+STEP_S: Final = 0.2
+"""Time between two predicted positions [s]."""
 HORIZONS_S: Final = (1.0, 2.0, 3.0, 5.0)
 """Horizons that are scored [s]."""
 TIMES_S: Final[Floats] = np.asarray(STEP_S * np.arange(1, round(HORIZONS_S[-1] / STEP_S) + 1), np.float64)

@@ -1,1 +1,0 @@
-"""Prediction: where tracked people will be in the next seconds, from their tracks alone."""
