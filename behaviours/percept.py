@@ -25,6 +25,8 @@ class SeenPerson:
         top, bottom: [image heights] rows of head and feet, 0 at the upper border, 1 at the lower one.
         confidence: 0..1, that this is a person.
         is_visible: whether the track is based on this image, and not on a prediction.
+        position_m: [m] x forward, y left in the robot frame; None if unknown.
+        velocity_m_s: [m/s] relative to the floor, along the same axes; None if unknown.
     """
 
     id: int
@@ -34,6 +36,8 @@ class SeenPerson:
     bottom: float
     confidence: float
     is_visible: bool
+    position_m: tuple[float, float] | None = None
+    velocity_m_s: tuple[float, float] | None = None
 
     @property
     def is_sound(self) -> bool:

@@ -8,10 +8,12 @@ import numpy as np
 from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.percept import Percept, Points
 from peopleboy.behaviours.sonar_echoes import BESIDE_RAD, echoes
+from peopleboy.geometry.collision_course import times_to_collision
 
 NOTHING_REMEMBERED: Points = np.zeros((0, 2))
 NOTHING_REMEMBERED.setflags(write=False)
 _NEAR_M = 1.6  # [m] obstacles farther from the robot's origin cannot enter the margin before the robot stops
+_SHARES = np.arange(8, -1, -1) / 8.0  # of a wanted speed, the fastest first
 _ARC_M = np.arange(1, 19) * 0.05  # checked arc lengths; the braking distance from 0.8 m/s is 0.84 m
 
 
@@ -46,6 +48,11 @@ class SafetyConfig:
             image.
         resume_images: number of new images in a row after which a robot that stopped drives
             again, so that it does not start and stop while a camera loses every few images.
+        walking_m_s: [m/s] slower people stand: the sonars detect them.
+        comfort_m: [m] distance from the robot's origin to the middle of a walking person, who should not come
+            nearer.
+        foresight_s: [s] time for which people and the robot are expected to keep their velocities.
+        slack_m: [m] a person who is nearer already may come nearer by this.
     """
 
     max_linear_m_s: float = 0.8
@@ -68,6 +75,10 @@ class SafetyConfig:
     tight_turn_rad_s: float = 0.3
     latest_image_s: float = 0.05
     resume_images: int = 3
+    walking_m_s: float = 0.3
+    comfort_m: float = 1.5
+    foresight_s: float = 3.0
+    slack_m: float = 0.2
 
 
 def limit(
@@ -99,9 +110,33 @@ def limit(
     backwards, forwards = -safe_speed(min(behind, arc), config), safe_speed(min(ahead, arc), config)
     turn = _safe_turn(command.angular_rad_s, np.concatenate([points, remembered]), config)
     return Command(
-        linear_m_s=min(max(command.linear_m_s, backwards), forwards),
+        linear_m_s=give_way(min(max(command.linear_m_s, backwards), forwards), percept, config),
         angular_rad_s=min(max(command.angular_rad_s, -turn), turn),
     )
+
+
+def give_way(linear_m_s: float, percept: Percept, config: SafetyConfig) -> float:
+    """Return the speed [m/s], from the wanted one to 0, at which walking people stay away longest.
+
+    All keep their velocities. Of speeds at which no person comes near within the foresight, the result is the
+    one next to the wanted speed; so a robot does not slow down behind a person who walks away.
+    """
+    walking = [
+        (*person.position_m, *person.velocity_m_s)
+        for person in percept.people
+        if person.position_m is not None
+        and person.velocity_m_s is not None
+        and math.hypot(*person.velocity_m_s) > config.walking_m_s
+    ]
+    speeds = linear_m_s * _SHARES
+    gaps, velocities = np.split(np.repeat(np.reshape(walking, (1, -1, 4)), len(speeds), axis=0), 2, axis=2)
+    velocities = velocities - np.stack([speeds, np.zeros(len(speeds))], axis=1)[:, None]
+    near_m = np.minimum(
+        config.comfort_m, np.maximum(np.hypot(gaps[..., 0], gaps[..., 1]) - config.slack_m, 0.0)
+    )
+    times = times_to_collision(gaps.reshape(-1, 2), velocities.reshape(-1, 2), near_m.ravel())
+    soonest = np.min(times.reshape(len(speeds), -1), axis=1, initial=config.foresight_s)
+    return float(speeds[np.argmax(soonest)])
 
 
 def safe_speed(room_m: float, config: SafetyConfig) -> float:

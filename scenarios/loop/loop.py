@@ -269,4 +269,6 @@ def see_person(track: Track, box: Box, width: int, height: int) -> SeenPerson:
         bottom=shares.bottom,
         confidence=track.confidence,
         is_visible=track.status is not Status.TOTALLY_OCCLUDED,
+        position_m=None if track.place is None else track.place.position_m,
+        velocity_m_s=None if track.place is None else track.place.velocity_m_s,
     )

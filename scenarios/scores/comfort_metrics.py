@@ -7,7 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.collision_course import times_to_collision
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.scenarios.scores.contacts import AT_REST_M_S
 from peopleboy.scenarios.scores.drive_record import (
     DriveRecord,
     Flags,
@@ -24,6 +26,7 @@ INTIMATE_M: Final = 0.45
 PERSONAL_M: Final = 1.2
 SOCIAL_M: Final = 3.6
 _FORESEEN_S: Final = 30.0  # horizon beyond which constant velocity is not assumed
+_SOON_S: Final = 1.5  # time to collision of a near miss
 _BODY_M: Final = 0.25  # radius of the disc that represents a person
 
 
@@ -46,6 +49,12 @@ class ComfortScore(ScoreRecord):
     intimate_intrusions: float = metric("intrusions, 0.45 m", "", "number of entries into intimate space")
     min_time_to_collision_s: float = metric(
         "time to collision", "s", "minimum during the run, assuming constant velocities"
+    )
+    driving_personal_s: float = metric(
+        "driving within 1.2 m", "s", "time that the robot drives with a person in personal space"
+    )
+    driving_at_people_s: float = metric(
+        "near misses", "s", "time that the robot drives with a time to collision below 1.5 s"
     )
     jerk_m_s3: float = metric("jerk", "m/s3", "root mean square of the forward jerk of the robot")
     felt_jerk_m_s3: float = metric(
@@ -72,6 +81,7 @@ def score_nearness(run: DriveRecord, gap_m: Floats, time_to_collision_s: Floats)
     """
     lasts_s = np.diff(run.time_s, append=run.time_s[-1])
     is_personal, is_intimate = gap_m < PERSONAL_M, gap_m < INTIMATE_M
+    is_driving = np.abs(run.speed_m_s) > AT_REST_M_S
     nearest_s = float(np.min(time_to_collision_s))
     jerk = _jerk(run)
     return ComfortScore(
@@ -80,6 +90,8 @@ def score_nearness(run: DriveRecord, gap_m: Floats, time_to_collision_s: Floats)
         personal_intrusions=float(_count_starts(is_personal)),
         intimate_intrusions=float(_count_starts(is_intimate)),
         min_time_to_collision_s=nearest_s if nearest_s <= _FORESEEN_S else math.nan,
+        driving_personal_s=float(lasts_s[is_driving & is_personal].sum()),
+        driving_at_people_s=float(lasts_s[is_driving & (time_to_collision_s < _SOON_S)].sum()),
         jerk_m_s3=root_mean_square(jerk),
         felt_jerk_m_s3=root_mean_square(jerk[gap_m[3:] < SOCIAL_M]),
     )
@@ -88,32 +100,6 @@ def score_nearness(run: DriveRecord, gap_m: Floats, time_to_collision_s: Floats)
 def _count_starts(flags: Flags) -> int:
     """Count the spans of true values (T,)."""
     return int(np.sum(flags & ~np.concatenate([[False], flags[:-1]])))
-
-
-def times_to_collision(gaps: Floats, velocities: Floats, reach_m: float) -> Floats:
-    """Return the times after which pairs of discs touch at constant velocities.
-
-    Args:
-        gaps: (Q, 2) [m] from the centre of the first disc to that of the second.
-        velocities: (Q, 2) [m/s] of the second disc relative to the first.
-        reach_m: [m] sum of the radii.
-
-    Returns:
-        (Q,) [s] the smaller root of |gap + t velocity| = reach_m; 0 while they overlap, inf if they never
-        touch.
-    """
-    a, b = _products(velocities, velocities), _products(gaps, velocities)
-    c = _products(gaps, gaps) - reach_m**2
-    inner = b * b - a * c
-    touches = (a > 0.0) & (b < 0.0) & (inner >= 0.0)
-    roots = c / (np.sqrt(np.where(touches, inner, 1.0)) - np.where(touches, b, 0.0))
-    return np.where(c <= 0.0, 0.0, np.where(touches, roots, np.inf))
-
-
-def _products(one: Floats, other: Floats) -> Floats:
-    """Return the scalar products (Q,) of vectors (Q, 2)."""
-    products: Floats = (one[:, None, :] @ other[:, :, None])[:, 0, 0]
-    return products
 
 
 def _jerk(run: DriveRecord) -> Floats:

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.safety_limits import SafetyConfig, limit, safe_speed
 from peopleboy.behaviours.sonar_echoes import echoes, fill_drop_outs
-from tests.helpers.percepts.percepts import free, percept_of
+from tests.helpers.percepts.percepts import free, percept_of, person
 from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
 CONFIG = SafetyConfig()
@@ -138,3 +139,58 @@ def test_a_percept_keeps_its_own_read_only_sonar():
     assert percept.sonar_m[0] == 1.0
     with pytest.raises(ValueError, match="read-only"):
         percept.sonar_m[0] = 2.0
+
+
+def among(*people):
+    """Free space with people at positions [m] with velocities [m/s]."""
+    seen = [person(position_m=at_m, velocity_m_s=velocity_m_s) for at_m, velocity_m_s in people]
+    return replace(free(), people=tuple(seen))
+
+
+def speed_among(*people, wanted=0.8):
+    return limit(Command(linear_m_s=wanted, angular_rad_s=0.3), among(*people), CONFIG).linear_m_s
+
+
+@pytest.mark.parametrize(
+    ("at_m", "velocity_m_s"),
+    [
+        ((1.2, 0.0), (0.9, 0.0)),  # a leader who walks away, nearer than the comfortable distance
+        ((4.0, 0.3), (0.7, 0.0)),  # a slower one, far ahead
+        ((2.0, 2.0), (0.0, 1.0)),
+        ((-2.0, 0.0), (1.2, 0.0)),  # from behind: a robot that waits would only be in the way sooner
+        ((3.0, 0.0), (0.0, 0.0)),  # people who stand are left to the sonars
+        ((9.0, 0.0), (-1.0, 0.0)),
+    ],
+)
+def test_people_who_do_not_come_near_do_not_slow_the_robot(at_m, velocity_m_s):
+    assert speed_among((at_m, velocity_m_s)) == 0.8
+
+
+def test_a_robot_stops_for_a_person_who_walks_at_it_and_gradually():
+    speeds_m_s = [speed_among(((x, 0.0), (-1.2, 0.0))) for x in (8.0, 6.5, 6.0, 5.5, 4.0, 1.0)]
+    assert speeds_m_s[0] == 0.8
+    assert speeds_m_s[-1] == 0.0
+    assert speeds_m_s == sorted(speeds_m_s, reverse=True)
+    assert len(set(speeds_m_s)) > 3
+
+
+def test_a_robot_slows_down_for_a_person_who_walks_into_its_lane_but_not_for_one_who_walks_past():
+    assert speed_among(((3.0, 2.0), (-0.3, -1.0))) < 0.4
+    assert speed_among(((3.0, 2.5), (-1.0, 0.0))) == 0.8
+
+
+@given(st.floats(0.5, 5.0), st.floats(-3.0, 3.0), st.floats(-1.5, 1.5), st.floats(-1.5, 1.5))
+def test_at_the_given_speed_people_stay_away_unless_standing_does_not_help(x, y, ahead, left):
+    speed = speed_among(((x, y), (ahead, left)))
+    times = np.linspace(0.0, CONFIG.foresight_s, 60)
+
+    def nearest(own):
+        return np.hypot(x + (ahead - own) * times, y + left * times).min()
+
+    near_m = min(CONFIG.comfort_m, np.hypot(x, y) - CONFIG.slack_m)
+    if np.hypot(ahead, left) > CONFIG.walking_m_s and nearest(0.0) > near_m + 0.01:
+        assert nearest(speed) > near_m - 0.01
+
+
+def test_tracks_without_a_position_or_a_velocity_do_not_slow_the_robot():
+    assert speed_among((None, None), ((2.0, 0.0), None)) == 0.8

@@ -1,14 +1,17 @@
+from dataclasses import replace
+
 import pytest
 
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.faults import FaultySensors
-from peopleboy.scenarios.loop.loop import Perception, closed_loop, thermal_box
+from peopleboy.scenarios.loop.loop import Perception, closed_loop, see_person, thermal_box
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.reproductions.contour.box_interaction import standing_box
+from peopleboy.tracker.track import FloorPlace
 from tests.helpers.runs.hand_made_tracks import track
 
 EMPTY = {
@@ -62,6 +65,14 @@ def test_who_is_known_on_the_floor_alone_has_the_box_of_somebody_who_stands_ther
 
 def test_who_has_neither_has_none() -> None:
     assert thermal_box(track(1, None), CAMERA) is None
+
+
+def test_behaviours_get_positions_and_velocities_on_the_floor() -> None:
+    place = FloorPlace(position_m=(4.0, -0.5), covariance_m2=(0.01, 0.0, 0.01), velocity_m_s=(-1.0, 0.2))
+    seen = see_person(replace(track(1), place=place), (10.0, 20.0, 30.0, 90.0), 320, 240)
+    assert (seen.position_m, seen.velocity_m_s) == (place.position_m, place.velocity_m_s)
+    unknown = see_person(track(1, None), (10.0, 20.0, 30.0, 90.0), 320, 240)
+    assert (unknown.position_m, unknown.velocity_m_s) == (None, None)
 
 
 class Cautious:

@@ -1,14 +1,13 @@
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.scores.by_tracker import ScoredRun, comfort_by_tracker
-from peopleboy.scenarios.scores.comfort_metrics import score_comfort, score_nearness, times_to_collision
+from peopleboy.scenarios.scores.comfort_metrics import score_comfort, score_nearness
 from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.tracker.evaluation.evaluate import evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
@@ -23,11 +22,12 @@ NOTHING = evaluate(
 )
 
 
-def scored(gap, *, x=None, soonest=None):
+def scored(gap, *, x=None, soonest=None, speed=0.0):
     frames = len(gap)
     x = np.zeros(frames) if x is None else np.array(x)
     run = made_drive(3.0 + STEP_S * np.arange(frames), np.stack([x, 0.0 * x, 0.0 * x], axis=1))
     times = np.full(frames, math.inf) if soonest is None else np.array(soonest)
+    run = replace(run, speed_m_s=np.broadcast_to(np.array(speed, float), frames))
     return score_nearness(run, np.array(gap, float), times)
 
 
@@ -36,6 +36,13 @@ def test_time_within_spaces_is_that_of_their_frames_and_intrusions_are_their_sta
     assert (score.personal_s, score.intimate_s) == (4 * STEP_S, 2 * STEP_S)
     assert (score.personal_intrusions, score.intimate_intrusions) == (1, 2)
     assert math.isnan(score.min_time_to_collision_s)
+
+
+def test_only_a_robot_that_drives_intrudes_and_nearly_collides():
+    speed = [0.5, 0.0, -0.5, 0.5, 0.04, 0.5]
+    score = scored([1.0, 1.0, 1.0, 2.0, 1.0, 1.0], soonest=[1.0, 1.0, 2.0, 1.0, 1.0, 9.0], speed=speed)
+    assert score.driving_personal_s == 2 * STEP_S  # the last frame has no duration
+    assert score.driving_at_people_s == 2 * STEP_S
 
 
 def test_jerk_is_that_of_the_forward_speed_and_felt_only_by_who_is_near():
@@ -51,32 +58,6 @@ def test_jerk_is_that_of_the_forward_speed_and_felt_only_by_who_is_near():
 def test_the_least_time_to_collision_is_told_unless_it_is_far_off():
     assert scored([2.0] * 3, soonest=[math.inf, 2.5, 4.0]).min_time_to_collision_s == 2.5
     assert math.isnan(scored([2.0] * 3, soonest=[math.inf, 31.0, 90.0]).min_time_to_collision_s)
-
-
-def time_to_collision(gap, velocity, reach_m):
-    return float(times_to_collision(gap[None], velocity[None], reach_m)[0])
-
-
-def test_head_on_the_time_is_that_of_the_gap_between_the_discs():
-    assert time_to_collision(np.array([5.0, 0.0]), np.array([-1.0, 0.0]), 1.0) == pytest.approx(4.0)
-    assert time_to_collision(np.array([5.0, 1.1]), np.array([-1.0, 0.0]), 1.0) == math.inf
-    assert time_to_collision(np.array([5.0, 0.0]), np.array([1.0, 0.0]), 1.0) == math.inf
-    assert time_to_collision(np.array([5.0, 0.0]), np.zeros(2), 1.0) == math.inf
-    assert time_to_collision(np.array([0.5, 0.0]), np.array([1.0, 0.0]), 1.0) == 0.0
-
-
-speeds = st.floats(-2.0, 2.0)
-
-
-@given(st.floats(1.1, 8.0), st.floats(-3.0, 3.0), speeds, speeds)
-def test_at_the_time_to_collision_the_discs_touch(x, y, vx, vy):
-    gap, velocity = np.array([x, y]), np.array([vx, vy])
-    time_s = time_to_collision(gap, velocity, 1.0)
-    if math.isfinite(time_s):
-        assert np.hypot(*(gap + time_s * velocity)) == pytest.approx(1.0, abs=1e-6)
-    else:
-        times = np.linspace(0.0, 20.0, 400)[:, None]
-        assert np.linalg.norm(gap + times * velocity, axis=1).min() > 1.0 - 1e-6
 
 
 def test_gaps_are_to_the_nearest_person_of_each_frame_and_times_to_the_first_collision():
