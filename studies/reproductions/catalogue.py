@@ -197,6 +197,7 @@ def _matching(name: str, among: Mapping[str, Experiment]) -> list[str]:
 
 def _is_called(number: str, name: str) -> bool:
     last = number.rsplit("-", 1)[-1]
+    number = number.lower()
     names = [number, number.rstrip("ab"), number.split("-")[0]]
     if paper_of(number) == "thesis":
         names += [last, last.rstrip("ab")]

@@ -75,6 +75,8 @@ def test_numbers_stand_for_all_that_have_them() -> None:
     assert [one.id for one in choose(["paper"])] == [f"paper-{number}" for number in PAPER]
     assert [one.id for one in choose(["paper-table-2", "figure-4.9b"])] == ["figure-4.9b", "paper-table-2"]
     assert [one.id for one in choose([])] == list(EXPERIMENTS)
+    for number in EXPERIMENTS:
+        assert number in [one.id for one in choose([number])]
 
 
 def test_papers_share_all_experiments_among_themselves() -> None:
