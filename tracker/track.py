@@ -18,6 +18,16 @@ class Status(StrEnum):
     UNKNOWN = "unknown"
 
 
+class Posture(StrEnum):
+    """Posture of a person, as far as an image shows it; who stands or walks is upright."""
+
+    UPRIGHT = "upright"
+    SITTING = "sitting"
+    BENDING = "bending"
+    CROUCHING = "crouching"
+    LYING = "lying"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FloorPlace:
     """A position on the floor and, if known, the velocity, with their uncertainties.
@@ -48,6 +58,7 @@ class Track:
         status: whether the person is confirmed, and how much of the person is occluded.
         age_s: time since the track was initiated [s].
         occluder: id of the person who occludes this one; None if there is none, or none known.
+        posture: posture of the person; None if the detector does not recognise postures.
     """
 
     id: int
@@ -57,6 +68,7 @@ class Track:
     status: Status
     age_s: float
     occluder: int | None = None
+    posture: Posture | None = None
 
     def __repr__(self) -> str:
         """Return id, status, confidence and position in one line."""
@@ -68,6 +80,8 @@ class Track:
             parts.append(f"position_m=({forward:.2f}, {left:.2f})")
         if self.occluder is not None:
             parts.append(f"occluder={self.occluder}")
+        if self.posture is not None:
+            parts.append(str(self.posture))
         return f"Track({', '.join(parts)})"
 
 

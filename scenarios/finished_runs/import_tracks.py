@@ -33,7 +33,7 @@ from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import TRACKERS
 
-UNKNOWN = ("status", "place", "occluder")
+UNKNOWN = ("status", "place", "occluder", "posture")
 """Attributes of a track that MOTChallenge text does not contain."""
 
 _MOST_OUTSIDE = 0.5  # share of the boxes; more suggests another run, camera or image size

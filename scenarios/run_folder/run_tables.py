@@ -22,7 +22,7 @@ from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation, Ellipse
 from peopleboy.tracker.reproductions.contour.variants import VARIANTS
-from peopleboy.tracker.track import Box, FloorPlace, Status, Track
+from peopleboy.tracker.track import Box, FloorPlace, Posture, Status, Track
 from peopleboy.tracker.tracking.sensor import parts_of
 
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
@@ -202,6 +202,7 @@ _TRACK: Final[TableColumns] = {
     **numbers(PLACE, attrgetter("place"), may_be_empty=True),
     **{name: _explained(name) for name in STATE},
     "occluder": TableColumn(INT, attrgetter("track.occluder"), True),
+    "posture": TableColumn(STRING, attrgetter("track.posture"), True),
 }
 
 _THING: Final[TableColumns] = {
@@ -480,4 +481,5 @@ def track_of(row: Mapping[str, Any]) -> Track:
         status=Status(row["status"]),
         age_s=row["age_s"],
         occluder=row["occluder"],
+        posture=None if row["posture"] is None else Posture(row["posture"]),
     )

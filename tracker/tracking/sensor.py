@@ -86,6 +86,7 @@ class SensorDetections:
         common_m: (M, 2) standard deviations of positions across and along the line of sight that further
             images of a person do not reduce, as they come from gait and build; None if there are none.
         is_masked: whether colours are of a person's own pixels, so that they do not mix where people overlap.
+        posture: (M, 5) log-odds of the postures, up to a constant; None if they are not recognised.
         settings: of this sensor.
     """
 
@@ -101,6 +102,7 @@ class SensorDetections:
     has_width: NDArray[np.bool_] | None = None
     is_masked: bool = False
     common_m: Floats | None = None
+    posture: Floats | None = None
     settings: Settings
 
     def __len__(self) -> int:

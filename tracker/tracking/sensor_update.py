@@ -109,6 +109,8 @@ class SensorUpdate:
             one.update_seen(evidence, time_s, dt_s, existence)
             if detections.common_m is not None:
                 one.common_m = detections.common_m[column]
+            if detections.posture is not None:
+                one.update_posture(detections.posture[column], dt_s)
             has_width = detections.has_width is None or bool(detections.has_width[column])
             one.update_box(detections.camera, detections.boxes[column], has_width=has_width)
             if not is_beside[row]:

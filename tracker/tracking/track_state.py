@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.tracking.appearance import FEATURES, Colours, Pattern, blend_colours, colour_similarity
 from peopleboy.tracker.tracking.config import ExistenceConfig
+
+_POSTURE_LASTS_S: Final = 3.0  # mean time until a person changes the posture
+_POSTURE_GAIN: Final = 0.4  # on log-odds: consecutive images are similar
 
 
 class DetectionEvidence(NamedTuple):
@@ -53,6 +56,7 @@ class TrackState:
         recent: colours since the person was last seen apart from others.
         clear_s: how long the person has been seen apart from others.
         separate_s: when the person was last seen apart from others.
+        posture: (5,) log-odds of the postures, up to a constant; None if no sensor recognises them.
         common_m: (2,) deviation of the position across and along the line of sight that further images do not
             reduce.
     """
@@ -79,6 +83,7 @@ class TrackState:
     recent: Colours = field(default_factory=lambda: np.zeros(FEATURES, np.float32))
     clear_s: float = 0.0
     separate_s: float = -math.inf
+    posture: Floats | None = None
     common_m: Floats = field(default_factory=lambda: np.zeros(2))
 
     @property
@@ -115,6 +120,15 @@ class TrackState:
         self.shown[camera] = self.seen_s, box
         if has_width:
             self.ratio += self.existence.learning * (float(box[2] / box[3]) - self.ratio)
+
+    def update_posture(self, log_odds: Floats, dt_s: float) -> None:
+        """Update the postures with the log-odds (5,) of one image: a hidden Markov model's filter."""
+        if self.posture is None:
+            self.posture = np.zeros(len(log_odds))
+        changes = -math.expm1(-dt_s / _POSTURE_LASTS_S) / len(log_odds)
+        before = np.exp(self.posture - self.posture.max())
+        mixed = before / before.sum() * (1.0 - changes * len(log_odds)) + changes
+        self.posture = np.log(mixed) + _POSTURE_GAIN * log_odds
 
     def mark_separate(self, time_s: float, dt_s: float) -> None:
         """Record that the person is seen apart from others now, by one sensor or several."""

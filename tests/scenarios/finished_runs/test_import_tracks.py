@@ -63,7 +63,7 @@ def test_the_tracks_are_theirs_and_what_they_lack_is_unknown(driven: Path, adopt
         "tracks": "theirs.txt",
         "camera": "thermal",
         "driven_by": "truth",
-        "unknown": ["status", "place", "occluder"],
+        "unknown": ["status", "place", "occluder", "posture"],
     }
     metrics = said(adopted, "metrics.json")
     assert "following" in said(driven, "metrics.json")

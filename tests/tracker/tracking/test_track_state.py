@@ -134,3 +134,27 @@ def test_the_faster_the_sooner_up_to_a_limit(one: float, other: float) -> None:
 
 def test_whoever_is_surely_somebody_is_told_standing_too() -> None:
     assert images_until_told(3.0 + CONFIG.confirmed, 0.0) <= 3
+
+
+def test_postures_are_filtered_over_time() -> None:
+    target = known()
+    assert target.posture is None
+    lying, upright = np.array([0.0, 0.0, 0.0, 0.0, 3.0]), np.array([3.0, 0.0, 0.0, 0.0, 0.0])
+    for _ in range(30):
+        target.update_posture(upright, DT_S)
+    assert target.posture is not None
+    assert target.posture.argmax() == 0
+    target.update_posture(lying, DT_S)
+    assert target.posture.argmax() == 0  # one image is not enough
+    for _ in range(30):
+        target.update_posture(lying, DT_S)
+    assert target.posture.argmax() == 4
+
+
+def test_without_evidence_all_postures_become_equally_probable() -> None:
+    target = known()
+    target.update_posture(np.array([9.0, 0.0, 0.0, 0.0, 0.0]), DT_S)
+    for _ in range(200):
+        target.update_posture(np.zeros(5), 1.0)
+    assert target.posture is not None
+    np.testing.assert_allclose(np.exp(target.posture) / np.exp(target.posture).sum(), 0.2, atol=1e-6)
