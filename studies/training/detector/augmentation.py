@@ -46,10 +46,11 @@ def augment(image: ThermalImage, rng: Draw) -> ThermalImage:
 
 def mirror(image: ThermalImage) -> ThermalImage:
     """Swap left and right."""
-    box = image.box.copy()
-    box[:, 0] = image.grey.shape[1] - 1.0 - (box[:, 0] + box[:, 2])
+    box, whole = image.box.copy(), image.whole.copy()
+    for one in (box, whole):
+        one[:, 0] = image.grey.shape[1] - 1.0 - (one[:, 0] + one[:, 2])
     grey, change = (np.ascontiguousarray(one[:, ::-1]) for one in (image.grey, image.change))
-    return replace(image, grey=grey, change=change, box=box)
+    return replace(image, grey=grey, change=change, box=box, whole=whole)
 
 
 def recolour(image: ThermalImage, rng: Draw) -> ThermalImage:
@@ -128,6 +129,9 @@ def take_rows(image: ThermalImage, first: float, end: float, fewest: int) -> The
         box=(image.box - np.array([0.0, begin, 0.0, 0.0]))[is_left],
         is_good=is_good[is_left],
         is_clear=image.is_clear[is_left],
+        whole=(image.whole - np.array([0.0, begin, 0.0, 0.0]))[is_left],
+        posture=image.posture[is_left],
+        visible=image.visible[is_left],
     )
 
 

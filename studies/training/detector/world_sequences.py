@@ -13,7 +13,7 @@ from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import calibrations_of
-from peopleboy.sim.people.body.skeleton import LOW
+from peopleboy.sim.people.body.skeleton import LOW, Posture
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.studies.training.detector.worlds import world_of
 from peopleboy.studies.training.samples import Arrays, SampleTask
@@ -41,7 +41,9 @@ class ThermalSequence(Arrays):
         change: (N, H, W) change of grey in 0.2 s, compensated for the robot's rotation.
         mount: (3,) row of the horizon [px], focal length [px] and height [m] of the camera.
         image: (P,) int64 index of the image of each person, visible or not.
-        box: (P, 4) [px] from head to feet.
+        box: (P, 4) [px] from head to feet, as wide as the torso.
+        whole: (P, 4) [px] of the whole silhouette.
+        posture: (P,) number of the posture, in the order of `Posture`.
         visible: (P,) visible share of the silhouette.
         inside: (P,) share of the silhouette inside the image.
         shown_px: (P,) number of visible pixels.
@@ -53,6 +55,8 @@ class ThermalSequence(Arrays):
     mount: Floats
     image: NDArray[np.int64]
     box: Floats
+    whole: Floats
+    posture: NDArray[np.int64]
     visible: Floats
     inside: Floats
     shown_px: Floats
@@ -101,11 +105,16 @@ def render_thermal(scenario: Scenario, seed: int) -> ThermalSequence:
         mount=np.array([mount.horizon_px, mount.focal_px, mount.height_m]),
         image=np.array([k for k, _ in people], np.int64),
         box=np.array([person.box for _, person in people], np.float64).reshape(-1, 4),
+        whole=np.array([person.whole_box for _, person in people], np.float64).reshape(-1, 4),
+        posture=np.array([_POSTURES.index(person.posture) for _, person in people], np.int64),
         visible=np.array([person.visible_fraction for _, person in people], np.float64),
         inside=np.array([person.inside_fraction for _, person in people], np.float64),
         shown_px=np.array([person.visible_px for _, person in people], np.float64),
         is_upright=np.array([person.posture not in LOW for _, person in people], np.bool_),
     )
+
+
+_POSTURES: Final = tuple(Posture)
 
 
 def render_world(seed: int) -> ThermalSequence:
@@ -138,6 +147,9 @@ class ThermalImage:
         box: (P, 4) [px] boxes of all people who are visible in part: head to feet, as wide as the torso.
         is_good: (P,) whether to train on the person: upright, and not mostly occluded.
         is_clear: (P,) whether the person is upright, and most of the part inside the image is visible.
+        whole: (P, 4) [px] boxes of their whole silhouettes.
+        posture: (P,) number of the posture, in the order of `Posture`.
+        visible: (P,) visible share of the part inside the image.
     """
 
     grey: Grey
@@ -146,6 +158,9 @@ class ThermalImage:
     box: Floats
     is_good: NDArray[np.bool_]
     is_clear: NDArray[np.bool_]
+    whole: Floats
+    posture: NDArray[np.int64]
+    visible: Floats
 
 
 def load_images(paths: Iterable[Path]) -> list[ThermalImage]:
@@ -166,4 +181,14 @@ def _image(sequence: ThermalSequence, k: int) -> ThermalImage:
         & (visible > _LEAST_CLEAR * inside)
         & (box[:, 1] > -HIGHEST * box[:, 3])
     )
-    return ThermalImage(sequence.grey[k], sequence.change[k], sequence.camera_mount(), box, is_good, is_clear)
+    return ThermalImage(
+        grey=sequence.grey[k],
+        change=sequence.change[k],
+        mount=sequence.camera_mount(),
+        box=box,
+        is_good=is_good,
+        is_clear=is_clear,
+        whole=sequence.whole[here],
+        posture=sequence.posture[here],
+        visible=visible / np.maximum(inside, 1e-6),
+    )

@@ -30,19 +30,64 @@ _SHARES: Final[Mapping[str, Mapping[str, float]]] = {
     "robot": {"stands": 0.9, "drives": 0.1},
 }
 _ODDS: Final[Mapping[str, float]] = {"begins_in_view": 0.9, "enters_later": 0.1}
-_CROWDS: Final = Distribution(
-    ranges={**RANGES, **{key: replace(RANGES[key], low=a, high=b) for key, (a, b) in _RANGES.items()}},
-    shares={**SHARES, **_SHARES},
-    odds={**ODDS, **{key: (odds, ODDS[key][1]) for key, odds in _ODDS.items()}},
-)
+_POSTURES: Final[Mapping[str, Mapping[str, float]]] = {
+    "posture": {
+        "standing": 0.3, "sitting": 0.15, "bending": 0.14, "crouching": 0.14, "lying": 0.08, "fallen": 0.07,
+        "arms_crossed": 0.06, "arms_raised": 0.06,
+    },
+}  # fmt: skip
+_HIGH: Final[Mapping[str, tuple[float, float]]] = {
+    "street_length": (18.0, 40.0),
+    "room_length": (9.0, 20.0),
+    "ceiling": (4.0, 5.0),
+    "people": (1, 8),
+    "camera_height": (2.2, 5.5),
+    "pitch": (8.0, 32.0),
+    "vertical_fov": (20.0, 45.0),
+}
+
+
+def _distribution(
+    ranges: Mapping[str, tuple[float, float]],
+    shares: Mapping[str, Mapping[str, float]],
+    odds: Mapping[str, float],
+) -> Distribution:
+    """Return the distribution of random worlds with other ranges, shares and odds, and with all postures."""
+    return Distribution(
+        ranges={**RANGES, **{key: replace(RANGES[key], low=a, high=b) for key, (a, b) in ranges.items()}},
+        shares={**SHARES, **_POSTURES, **shares},
+        odds={**ODDS, **{key: (share, ODDS[key][1]) for key, share in odds.items()}},
+    )
+
+
+_ALL_POSTURES: Final = _distribution({}, {}, {"pauses": 0.4, "begins_in_view": 0.8})
+_CROWDS: Final = _distribution(_RANGES, _SHARES, {**_ODDS, "pauses": 0.35})
+_FROM_ABOVE: Final = _distribution(_HIGH, {**_SHARES, "place": {"room": 0.15, "street": 0.85}}, _ODDS)
 _TOGETHER: Final = 0.5  # share of people with a companion
 _APART_M: Final = (0.45, 0.9)
 _TRIES: Final = 4
 
 
+_SKINS: Final = 0.6  # share of worlds whose people have skins instead of capsules
+_AGES: Final = {"adult": 0.75, "elder": 0.15, "child": 0.1}
+
+
+def ordinary_world(seed: int, distribution: Distribution = _ALL_POSTURES) -> World:
+    """Draw a random world with people of all ages and in all postures."""
+    world = random_world(seed, distribution=distribution)
+    rng = stream(seed, "training_people")
+    people = [
+        person | {"age": str(rng.choice(list(_AGES), p=list(_AGES.values())))}
+        for person in world.get("people", ())
+    ]
+    older = world | ({"people": people} if people else {})
+    bodies = {"bodies": "skins"} if rng.random() < _SKINS else {}
+    return (older if is_valid(older) else world) | bodies
+
+
 def crowded_world(seed: int) -> dict[str, Any]:
     """Draw a world with 5 to 10 people, as far as there is room, some with companions beside them."""
-    world = random_world(seed, distribution=_CROWDS)
+    world = ordinary_world(seed, _CROWDS)
     rng = stream(seed, "crowded_world")
     for person in world.get("people", ()):
         if rng.random() < _TOGETHER:
@@ -122,23 +167,28 @@ class WorldKind:
 
 
 def _library_world(seed: int) -> World:
-    return with_library_span(random_world(seed))
+    return with_library_span(ordinary_world(seed))
 
 
 def _library_crowd(seed: int) -> World:
     return with_library_span(crowded_world(seed))
 
 
+def _world_from_above(seed: int) -> World:
+    return ordinary_world(seed, _FROM_ABOVE)
+
+
 def _warm_world(seed: int) -> World:
-    return with_warm_air(random_world(seed), rounded(stream(seed, "warm_world").uniform(*_WARM_AIR_C)))
+    return with_warm_air(ordinary_world(seed), rounded(stream(seed, "warm_world").uniform(*_WARM_AIR_C)))
 
 
 KINDS: Final = (
-    WorldKind("random worlds", 1000, 0.44, random_world),
-    WorldKind("crowds", 2000, 0.1, crowded_world),
-    WorldKind("worlds in the robot's own span", 3000, 0.3, _library_world),
+    WorldKind("random worlds", 1000, 0.34, ordinary_world),
+    WorldKind("crowds", 2000, 0.12, crowded_world),
+    WorldKind("worlds in the robot's own span", 3000, 0.26, _library_world),
     WorldKind("plain worlds as warm as people", 4000, 0.06, _warm_world),
-    WorldKind("crowds in the robot's own span", 5000, 0.1, _library_crowd),
+    WorldKind("crowds in the robot's own span", 5000, 0.08, _library_crowd),
+    WorldKind("worlds seen from above", 6000, 0.14, _world_from_above),
 )
 
 LATER: Final = 10_000

@@ -150,7 +150,16 @@ def test_people_are_cut_off_at_feet_and_head(shots: list[ThermalImage]) -> None:
 def test_who_is_cut_away_is_not_there(shots: list[ThermalImage]) -> None:
     low = np.array([[10.0, 105.0, 6.0, 14.0]])
     good = np.array([True, False])
-    two = replace(shots[0], box=np.concatenate([shots[0].box, low]), is_good=good, is_clear=good)
+    box = np.concatenate([shots[0].box, low])
+    two = replace(
+        shots[0],
+        box=box,
+        whole=box,
+        is_good=good,
+        is_clear=good,
+        posture=np.zeros(2, np.int64),
+        visible=np.ones(2),
+    )
     part = take_rows(two, 0.0, 100.0, 60)
     np.testing.assert_array_equal(part.box, shots[0].box)
     assert len(part.is_good) == 1
@@ -177,7 +186,15 @@ HIGH, WIDE = 100, 80
 def shot_of(box: tuple[float, float, float, float], shots: list[ThermalImage]) -> ThermalImage:
     flat = np.full((HIGH, WIDE), 90, np.uint8)
     sure = np.ones(1, np.bool_)
-    return replace(shots[0], grey=flat, change=flat, box=np.array([box]), is_good=sure, is_clear=sure)
+    return replace(
+        shots[0],
+        grey=flat,
+        change=flat,
+        box=np.array([box]),
+        whole=np.array([box]),
+        is_good=sure,
+        is_clear=sure,
+    )
 
 
 @pytest.mark.parametrize(
@@ -229,6 +246,9 @@ def drawn_shot(seed: int = 0) -> ThermalImage:
         box=np.array([[10.0, 5.0, 8.0, 30.0]]),
         is_good=np.ones(1, np.bool_),
         is_clear=np.ones(1, np.bool_),
+        whole=np.array([[8.0, 5.0, 12.0, 30.0]]),
+        posture=np.zeros(1, np.int64),
+        visible=np.ones(1),
     )
 
 

@@ -58,13 +58,16 @@ def test_the_same_random_numbers_give_the_same_examples(shots: list[ThermalImage
 
 def test_who_is_mostly_outside_is_not_learned_from(shots: list[ThermalImage]) -> None:
     shot = shots[0]
-    away = ThermalImage(
-        shot.grey,
-        shot.change,
-        shot.mount,
-        np.array([[-9.0, 20.0, 10.0, 60.0], [50.0, 20.0, 3.0, 12.0]]),
-        np.ones(2, np.bool_),
-        np.ones(2, np.bool_),
+    box = np.array([[-9.0, 20.0, 10.0, 60.0], [50.0, 20.0, 3.0, 12.0]])
+    both = np.ones(2, np.bool_)
+    away = replace(
+        shot,
+        box=box,
+        whole=box,
+        is_good=both,
+        is_clear=both,
+        posture=np.zeros(2, np.int64),
+        visible=np.ones(2),
     )
     assert len(samples_of([away], 0, 0).overlap) == 0
 
