@@ -1,10 +1,11 @@
-"""Names of trackers that use a user's detector: TRACKER+DETECTOR, such as detection+my_module:MyDetector."""
+"""Names of trackers that use another detector: TRACKER+DETECTOR, such as detection+my_module:MyDetector."""
 
 from pathlib import Path
 from typing import Final
 
 _PLUS: Final = "+"
 _FILE: Final = ".txt"
+_WEIGHTS: Final = ".npz"
 
 
 def with_detector(tracker: str, detector: str | None) -> str:
@@ -23,9 +24,15 @@ def is_detection_file(detector: str | None) -> bool:
     return detector is not None and detector.lower().endswith(_FILE)
 
 
+def is_network_file(detector: str | None) -> bool:
+    """Return whether a detector is a network that `peopleboy train people` wrote."""
+    return detector is not None and detector.lower().endswith(_WEIGHTS)
+
+
 def shown_detector(detector: str) -> str:
     """Return the name of a detector as reports show it: a file without its folder."""
-    return Path(detector).name if is_detection_file(detector) else detector
+    is_file = is_detection_file(detector) or is_network_file(detector)
+    return Path(detector).name if is_file else detector
 
 
 def shown_name(name: str) -> str:

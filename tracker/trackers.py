@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final, Protocol, runtime_checkable
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import guarded, load_own
 from peopleboy.registry import Registry
-from peopleboy.tracker.tracker_names import split_name
+from peopleboy.tracker.tracker_names import is_network_file, split_name
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from peopleboy.tracker.frame import Frame
     from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
     from peopleboy.tracker.reproductions.contour.single_filter import SingleFilter
-    from peopleboy.tracker.sensors.own_detector import ImageDetector
     from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
     from peopleboy.tracker.track import Box, Track
     from peopleboy.tracker.tracking.config import PeopleTrackerConfig
@@ -83,7 +82,7 @@ DEFAULT_TRACKER: Final = DETECTION_TRACKER
 BY_CONTRAST: Final = frozenset({DETECTION_TRACKER, LIVE_TRACKER, "attentive"})
 """Trackers that use only the contrast of a thermal image, not its absolute temperatures."""
 WITH_DETECTOR: Final = (DETECTION_TRACKER, LIVE_TRACKER, "handover", "fused", "attentive")
-"""Trackers that can use a user's detector in place of the learned one; it is their second argument."""
+"""Trackers that can use another detector in place of their own; its name is their second argument."""
 
 
 def uses_contrast(name: str) -> bool:
@@ -113,13 +112,11 @@ def _single_filter(name: str, rng: "np.random.Generator") -> "SingleFilter":
     return SingleFilter(VARIANTS[name], rng)
 
 
-def _thermal_sensor(
-    detector: "ImageDetector | None", config: "PeopleTrackerConfig | None" = None
-) -> "ThermalSensor":
-    from peopleboy.tracker.sensors.own_detector import OwnDetector
+def _thermal_sensor(detector: str | None, config: "PeopleTrackerConfig | None" = None) -> "ThermalSensor":
+    from peopleboy.tracker.sensors.own_detector import make_box_detector
     from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
 
-    return ThermalSensor(config, None if detector is None else OwnDetector(detector, config))
+    return ThermalSensor(config, None if detector is None else make_box_detector(detector, config))
 
 
 @TRACKERS.register(
@@ -129,7 +126,7 @@ def _thermal_sensor(
     "each person with a Kalman filter in metres. Needs contrast, but not temperatures. "
     "Re-identifies people by the colours of their clothes.",
 )
-def _detection(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
+def _detection(rng: "np.random.Generator", detector: str | None = None) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
     return PeopleTracker((_thermal_sensor(detector),))
@@ -141,7 +138,7 @@ def _detection(rng: "np.random.Generator", detector: "ImageDetector | None" = No
     summary="Like `detection`, but searches whole images of a camera without calibration at most 22 times a "
     "second, and rescores tracked people in between. At 30 images a second it needs half the time.",
 )
-def _detection_live(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
+def _detection_live(rng: "np.random.Generator", detector: str | None = None) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.tracking.config import LIVE
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
@@ -261,7 +258,7 @@ def _panoramic(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     summary="Detects people in the thermal image and in the panorama, in one Kalman filter for each person. "
     "A person keeps the same id from the thermal image to the panorama and back.",
 )
-def _handover(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
+def _handover(rng: "np.random.Generator", detector: str | None = None) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaSensor
     from peopleboy.tracker.tracking.config import FUSED
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
@@ -320,7 +317,7 @@ def _laser(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     "scan if the robot has these, in one Kalman filter for each person. Uses depth to find occluders. "
     "Re-identifies people by colours, motion and stature.",
 )
-def _fused(rng: "np.random.Generator", detector: "ImageDetector | None" = None) -> Tracker:  # noqa: ARG001
+def _fused(rng: "np.random.Generator", detector: str | None = None) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.sensors.depth.depth_sensor import DepthSensor
     from peopleboy.tracker.sensors.laser.laser_sensor import LaserSensor
     from peopleboy.tracker.sensors.panorama.panorama_sensor import PanoramaSensor
@@ -340,7 +337,7 @@ def _fused(rng: "np.random.Generator", detector: "ImageDetector | None" = None) 
 )
 def _attentive(
     rng: "np.random.Generator",  # noqa: ARG001
-    detector: "ImageDetector | None" = None,
+    detector: str | None = None,
 ) -> Tracker:
     from peopleboy.tracker.tracking.config import ATTENTIVE
     from peopleboy.tracker.tracking.people_tracker import PeopleTracker
@@ -364,12 +361,15 @@ def _attentive_printed(rng: "np.random.Generator") -> Tracker:
 
 def is_own(name: str) -> bool:
     """Return whether tracks depend on a user's tracker or detector, or on that of another package."""
-    return ":" in name or TRACKERS.is_plugged_in(name) or split_name(name)[1] is not None
+    detector = split_name(name)[1]
+    has_own = detector is not None and not is_network_file(detector)
+    return ":" in name or TRACKERS.is_plugged_in(name) or has_own
 
 
 def make_tracker(name: str, seed: int = 0) -> Tracker:
     """Make a tracker by its name: one of `TRACKERS`, or "module:Class" for one of your own.
 
+    "detection+FILE.npz" is the tracker `detection` with a network of `peopleboy train people`,
     "detection+module:Class" is the tracker `detection` with a detector of your own, and "detection+FILE.txt"
     with the detections of a MOTChallenge file; `WITH_DETECTOR` lists the trackers that can use them. Modules
     are searched for on the Python path and in the working directory.
@@ -406,14 +406,12 @@ def make_tracker(name: str, seed: int = 0) -> Tracker:
 
 
 def _with_detector(tracker: str, detector: str, rng: "np.random.Generator") -> Tracker:
-    from peopleboy.tracker.sensors.own_detector import make_detector
-
     if tracker not in WITH_DETECTOR:
         known = ", ".join(WITH_DETECTOR)
         raise BadInput(
             f"tracker {tracker!r} uses no detector, got {detector!r}; choose a tracker from {known}"
         )
-    made: Tracker = TRACKERS[tracker](rng, make_detector(detector))
+    made: Tracker = TRACKERS[tracker](rng, detector)
     return made
 
 

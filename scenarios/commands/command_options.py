@@ -35,8 +35,9 @@ SEED = "Random seed.  [default: 0, or the seed of the run if SCENARIO is a run's
 TRACKERS = f"{', '.join(TRACKER_NAMES)}, truth (ground-truth boxes) or module:Class (your own)"
 TRACKER = f"Tracker to use: {TRACKERS}.  [default: the scenario's tracker, or detection]"
 DETECTOR = (
-    "Detector that replaces the tracker's own: module:Class (your own), or a MOTChallenge file of detections "
-    f"(.txt). For the trackers {', '.join(WITH_DETECTOR)}.  [default: the tracker's own]"
+    "Detector that replaces the tracker's own: module:Class (your own), a MOTChallenge file of detections "
+    f"(.txt), or a network of `peopleboy train people` (.npz). For the trackers {', '.join(WITH_DETECTOR)}.  "
+    "[default: the tracker's own]"
 )
 BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)} or module:Class (your own)"
 BEHAVIOUR = f"Behaviour that drives the robot: {BEHAVIOURS}.  [default: the scenario's behaviour]"

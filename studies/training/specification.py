@@ -21,6 +21,10 @@ MODELS: Final[Mapping[str, tuple[str, str]]] = {
         "detector.train_cascade:CascadeTraining",
         "Train the boosted trees that detect people in windows of thermal images.",
     ),
+    "people": (
+        "detector.train_people:PeopleTraining",
+        "Train the network that detects people of all postures in thermal images.",
+    ),
     "rescoring": (
         "detector.train_rescoring:RescoringTraining",
         "Train the network that corrects scores and boxes of the cascade's detections.",

@@ -17,12 +17,14 @@ class DetectedBoxes(NamedTuple):
         followed: boxes of tracks that were located without the detector, with their earlier log-odds.
         rows: of the tracks of `followed`.
         is_search: whether the whole image was searched, so that a detection without a track is a new person.
+        posture: (M, 5) log-odds of the postures of `found`, up to a constant; None if none are recognised.
     """
 
     found: Detections
     followed: Detections = NO_DETECTIONS
     rows: tuple[int, ...] = ()
     is_search: bool = True
+    posture: Floats | None = None
 
 
 class BoxDetector(Protocol):

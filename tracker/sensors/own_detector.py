@@ -1,4 +1,4 @@
-"""Detectors of users: a class with `detect(image)`, or the detections of a MOTChallenge file."""
+"""Detectors of users: a class with `detect(image)`, a MOTChallenge file, or a trained network."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count
@@ -11,12 +11,16 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import load_own
 from peopleboy.tracker.boxes import centres_outside
+from peopleboy.tracker.camera_mount import mount_of
 from peopleboy.tracker.evaluation.mot_files import read_detections
 from peopleboy.tracker.evaluation.sequence import FARTHEST
 from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame, lacking
-from peopleboy.tracker.sensors.box_detector import DetectedBoxes
+from peopleboy.tracker.networks.convolution import Workspace
+from peopleboy.tracker.sensors.box_detector import BoxDetector, DetectedBoxes
 from peopleboy.tracker.sensors.detections import Detections
-from peopleboy.tracker.tracker_names import is_detection_file
+from peopleboy.tracker.sensors.thermal.detector.image_change import PastImages
+from peopleboy.tracker.sensors.thermal.detector.people_network import PeopleNetwork
+from peopleboy.tracker.tracker_names import is_detection_file, is_network_file
 from peopleboy.tracker.tracking.appearance import boxes_in_other_image
 from peopleboy.tracker.tracking.config import DetectorScoreConfig, PeopleTrackerConfig
 from peopleboy.tracker.tracking.sensor import Predictions, SensorDetections
@@ -49,8 +53,19 @@ class ImageDetector(Protocol):
         ...
 
 
+def make_box_detector(name: str, config: PeopleTrackerConfig | None = None) -> BoxDetector:
+    """Make a detector for the thermal sensor: a trained network by its file, or one of a user by its name.
+
+    Raises:
+        BadInput: as for `make_detector`.
+    """
+    if is_network_file(name):
+        return NetworkDetector(PeopleNetwork.load(Path(name)), config)
+    return OwnDetector(make_detector(name), config)
+
+
 def make_detector(name: str) -> ImageDetector:
-    """Make a detector by its name: "module:Class", or a MOTChallenge file of detections that ends in .txt.
+    """Make a user's detector by its name: "module:Class", or a MOTChallenge file that ends in .txt.
 
     Raises:
         BadInput: the name is neither, the object is not a detector, or the file is invalid.
@@ -59,7 +74,8 @@ def make_detector(name: str) -> ImageDetector:
         return FileDetector(Path(name))
     if ":" not in name:
         raise BadInput(
-            f"detector {name!r}: must be module:Class (your own), or a MOTChallenge file of detections (.txt)"
+            f"detector {name!r}: must be module:Class (your own), a MOTChallenge file of detections (.txt), "
+            "or a network of `peopleboy train people` (.npz)"
         )
     detector = load_own("detector", name, _CALL)()
     if not isinstance(detector, ImageDetector):
@@ -119,6 +135,37 @@ class OwnDetector:
 
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
         """Do nothing: the detector knows of no tracks."""
+
+
+class NetworkDetector:
+    """Runs a trained network on every image, and recognises postures.
+
+    Args:
+        network: the network.
+        config: of the tracker.
+    """
+
+    def __init__(self, network: PeopleNetwork, config: PeopleTrackerConfig | None = None) -> None:
+        self._weakest = (PeopleTrackerConfig() if config is None else config).existence.weakest
+        self._network = network
+        self._past, self._workspace = PastImages(), Workspace()
+
+    def detect(
+        self,
+        frame: Frame,
+        view: Viewpoint,  # noqa: ARG002
+        predicted: Predictions,  # noqa: ARG002
+        expected: Floats,  # noqa: ARG002
+    ) -> DetectedBoxes:
+        """Detect people in the next thermal image; see `BoxDetector`."""
+        grey, calibration = frame.grey(THERMAL), frame.calibrations.get(THERMAL)
+        mount = None if calibration is None else mount_of(calibration, grey.shape[0])
+        self._past.keep(grey, frame.time_s, frame.odometry)
+        found = self._network.detect(grey, self._past.change(mount), mount, self._weakest, self._workspace)
+        return DetectedBoxes(Detections.from_trees(found.box, found.score), posture=found.posture)
+
+    def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
+        """Do nothing: the network uses no tracks."""
 
 
 def log_odds_of(probability: Floats) -> Floats:

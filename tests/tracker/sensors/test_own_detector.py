@@ -12,9 +12,10 @@ import pytest
 
 from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
-from peopleboy.tracker.sensors.own_detector import FileDetector, OwnDetector
+from peopleboy.tracker.sensors.own_detector import FileDetector, NetworkDetector, OwnDetector
+from peopleboy.tracker.sensors.thermal.detector.people_network import NetworkDetections, PeopleNetwork
 from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
-from peopleboy.tracker.track import Status, Track
+from peopleboy.tracker.track import Posture, Status, Track
 from peopleboy.tracker.trackers import WITH_DETECTOR, is_own, make_tracker
 from peopleboy.tracker.tracking.config import DetectorScoreConfig
 from peopleboy.tracker.tracking.people_tracker import PeopleTracker
@@ -273,3 +274,41 @@ def test_a_detector_is_found_by_name_in_the_working_directory(tracker: str) -> N
 def test_what_is_no_detector_is_refused(name: str, says: tuple[str, ...]) -> None:
     with refused(*says):
         make_tracker(name)
+
+
+class WalkingThenLying:
+    """A network that finds one person, who lies from the 20th image on."""
+
+    def __init__(self) -> None:
+        self.images = 0
+
+    def detect(self, *_: object) -> NetworkDetections:
+        posture = np.zeros((1, len(Posture)))
+        posture[0, -1 if self.images >= 20 else 0] = 4.0
+        box = np.array([WALK[self.images]])
+        self.images += 1
+        return NetworkDetections(np.array([5.0]), box, box[:, :2], posture)
+
+
+def test_a_network_names_the_postures_of_tracks() -> None:
+    network: Any = WalkingThenLying()
+    tracker = PeopleTracker((ThermalSensor(detector=NetworkDetector(network)),))
+    grey = np.zeros((240, 320), np.uint8)
+    named = [
+        [track.posture for track in tracker.update(Frame(time_s=k / 15.0, images={THERMAL: grey}))]
+        for k in range(45)
+    ]
+    assert named[19] == [Posture.UPRIGHT]
+    assert named[20] == [Posture.UPRIGHT]  # one image is not enough
+    assert named[44] == [Posture.LYING]
+
+
+def test_a_trained_network_is_read_from_its_file(tmp_path: Path) -> None:
+    weights = {name: np.zeros(shape, np.float32) for name, shape in PeopleNetwork.shapes().items()}
+    PeopleNetwork(weights | {"line": np.array([1.0, -9.0], np.float32)}).save(tmp_path / "people.npz")
+    name = f"detection+{tmp_path / 'people.npz'}"
+    assert not is_own(name)  # its boxes are those of the tracker
+    frame = Frame(time_s=0.0, images={THERMAL: np.zeros((96, 128), np.uint8)})
+    assert make_tracker(name).update(frame) == ()
+    with refused("cannot be read", "peopleboy train people"):
+        make_tracker(f"detection+{tmp_path / 'none.npz'}")

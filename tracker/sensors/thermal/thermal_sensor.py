@@ -131,6 +131,7 @@ class ThermalSensor:
             colours=colours,
             assigned={row: column for column, row in enumerate(boxes.rows, start=len(new))},
             is_search=boxes.is_search,
+            posture=boxes.posture,
             settings=self._settings(view),
         )
 
