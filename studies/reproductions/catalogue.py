@@ -196,9 +196,9 @@ def _matching(name: str, among: Mapping[str, Experiment]) -> list[str]:
 
 
 def _is_called(number: str, name: str) -> bool:
-    last = number.rsplit("-", 1)[-1]
-    number = number.lower()
-    names = [number, number.rstrip("ab"), number.split("-")[0]]
+    id_ = number.lower()
+    names = [id_, id_.rstrip("ab"), id_.split("-")[0]]
     if paper_of(number) == "thesis":
+        last = id_.rsplit("-", 1)[-1]
         names += [last, last.rstrip("ab")]
     return name in names
