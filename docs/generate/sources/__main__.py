@@ -24,8 +24,8 @@ from peopleboy.studies.reproductions.plan import full_plan
 from peopleboy.studies.reproductions.runner import RESULTS, finished
 from peopleboy.studies.reproductions.source_page import head_of
 
-PAPERS = ("thesis", "2005", "panoramic")
-"""The sources on the page; results of the fourth are on the page of results."""
+PAPERS = ("thesis", "2005", "panoramic", "situation")
+"""The sources on the page."""
 
 _COMMAND = "; ".join(f"peopleboy reproduce --paper {paper}" for paper in PAPERS)
 
