@@ -186,12 +186,15 @@ class Tracks:
     ) -> Floats:
         """Return the log-odds (G, M) that people who are found are those of the gallery, less those needed.
 
-        Colours must be known, as nothing else is sure enough after an absence of any length.
+        Colours must be known, as nothing else is sure enough after an absence of any length. A person who may
+        as well be another one of the gallery is no one of them.
         """
         assert self.gallery is not None
         absent = self.gallery.candidates(known)
         odds = same_person_log_odds(absent, np.zeros(len(known)), found, config)
-        return np.where(colour_similarities(absent.colours, found.colours)[1], odds, -np.inf)
+        is_known = colour_similarities(absent.colours, found.colours)[1]
+        share = np.where(is_known, np.exp(odds), 0.0)
+        return np.where(is_known, odds - np.log1p(share.sum(axis=0) - share), -np.inf)
 
     def _continue(self, one: TrackState, before: int, lost: Sequence[int], known: Sequence[int]) -> None:
         """Let a new track continue a lost track or, after all of these, a person of the gallery."""
