@@ -22,7 +22,7 @@ from peopleboy.studies.training.detector.people_samples import POSTURE_OF
 from peopleboy.studies.training.detector.worlds import ordinary_world
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.track import Posture, confirmed
+from peopleboy.tracker.track import TrackPosture, confirmed
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 OUT: Final = Path("runs/postures.json")
@@ -47,7 +47,7 @@ def count(tick: Tick) -> tuple[Counts, int]:
     people = [person for person in tick.truth.people if person.box is not None and person.visible_px]
     boxes = np.array([box for _, box in tracks]).reshape(-1, 4)
     overlap = iou(np.array([person.box for person in people]).reshape(-1, 1, 4), boxes[None])
-    counts = np.zeros((3, len(Posture)), np.int64)
+    counts = np.zeros((3, len(TrackPosture)), np.int64)
     for person, row in zip(people, overlap, strict=True):
         assert person.box is not None
         if person.visible_fraction < _VISIBLE or person.box[3] < _SHORTEST_PX:
@@ -56,14 +56,14 @@ def count(tick: Tick) -> tuple[Counts, int]:
         counts[0, number] += 1
         if len(row) and row.max() >= _ON_PERSON:
             counts[1, number] += 1
-            counts[2, number] += tracks[int(row.argmax())][0].posture == list(Posture)[number]
+            counts[2, number] += tracks[int(row.argmax())][0].posture == list(TrackPosture)[number]
     return counts, int((overlap.max(axis=0, initial=0.0) < _ON_PERSON / 2.0).sum())
 
 
 def table_of(counts: Counts, images: int, false_boxes: int) -> dict[str, dict[str, float | None]]:
     """Return the values of `COLUMNS` for each posture, and for all."""
     rows: dict[str, dict[str, float | None]] = {}
-    every = {**dict(zip(Posture, counts.T, strict=True)), "all": counts.sum(axis=1)}
+    every = {**dict(zip(TrackPosture, counts.T, strict=True)), "all": counts.sum(axis=1)}
     for name, (people, tracked, named) in every.items():
         rows[str(name)] = {
             "people": float(people),
@@ -84,7 +84,7 @@ def main(worlds: int, trackers: tuple[str, ...]) -> None:
     """
     found: dict[str, dict[str, float | None]] = {}
     for name in trackers:
-        counts, images, false_boxes = np.zeros((3, len(Posture)), np.int64), 0, 0
+        counts, images, false_boxes = np.zeros((3, len(TrackPosture)), np.int64), 0, 0
         for seed in range(FIRST_SEED, FIRST_SEED + worlds):
             scenario = parse_scenario(ordinary_world(seed), source=f"world {seed}", folder=Path())
             frames = round(scenario.duration_s * scenario.world(seed).control_hz)

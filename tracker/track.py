@@ -18,8 +18,8 @@ class Status(StrEnum):
     UNKNOWN = "unknown"
 
 
-class Posture(StrEnum):
-    """Posture of a person, as far as an image shows it; who stands or walks is upright."""
+class TrackPosture(StrEnum):
+    """TrackPosture of a person, as far as an image shows it; who stands or walks is upright."""
 
     UPRIGHT = "upright"
     SITTING = "sitting"
@@ -68,7 +68,7 @@ class Track:
     status: Status
     age_s: float
     occluder: int | None = None
-    posture: Posture | None = None
+    posture: TrackPosture | None = None
 
     def __repr__(self) -> str:
         """Return id, status, confidence and position in one line."""

@@ -19,7 +19,7 @@ from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.reproductions.contour.particles import Particles
-from peopleboy.tracker.track import Box, Posture, Status, Track
+from peopleboy.tracker.track import Box, Status, Track, TrackPosture
 
 PARTICLES_A_FILTER = 50
 PARTICLES_AT_MOST = 100
@@ -132,7 +132,7 @@ def track_label(track: Track) -> str:
     """Return the label of a track: its id, and what is unusual, as "3 hidden behind 1" or "2 lying"."""
     standing = _STANDINGS.get(track.status, "")
     behind = "" if track.occluder is None else f"behind {track.occluder}"
-    posture = "" if track.posture in (None, Posture.UPRIGHT) else str(track.posture)
+    posture = "" if track.posture in (None, TrackPosture.UPRIGHT) else str(track.posture)
     return " ".join(word for word in (str(track.id), posture, standing, behind) if word)
 
 

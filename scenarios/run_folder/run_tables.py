@@ -22,7 +22,7 @@ from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation, Ellipse
 from peopleboy.tracker.reproductions.contour.variants import VARIANTS
-from peopleboy.tracker.track import Box, FloorPlace, Posture, Status, Track
+from peopleboy.tracker.track import Box, FloorPlace, Status, Track, TrackPosture
 from peopleboy.tracker.tracking.sensor import parts_of
 
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
@@ -481,5 +481,5 @@ def track_of(row: Mapping[str, Any]) -> Track:
         status=Status(row["status"]),
         age_s=row["age_s"],
         occluder=row["occluder"],
-        posture=None if row["posture"] is None else Posture(row["posture"]),
+        posture=None if row["posture"] is None else TrackPosture(row["posture"]),
     )

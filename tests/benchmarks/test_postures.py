@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks.postures import COLUMNS, count, table_of
-from peopleboy.tracker.track import Posture, Status, Track
+from peopleboy.tracker.track import Status, Track, TrackPosture
 
 STANDING, LYING = (10.0, 10.0, 20.0, 80.0), (100.0, 70.0, 40.0, 15.0)
 
@@ -16,7 +16,7 @@ def person(box: tuple[float, ...], posture: str, visible: float = 1.0) -> Any:
     return SimpleNamespace(box=box, posture=posture, visible_fraction=visible, visible_px=50)
 
 
-def track(number: int, box: tuple[float, float, float, float], posture: Posture | None) -> Track:
+def track(number: int, box: tuple[float, float, float, float], posture: TrackPosture | None) -> Track:
     return Track(
         id=number, boxes={"thermal": box}, confidence=0.9, status=Status.TRACKED, age_s=1.0, posture=posture
     )
@@ -33,8 +33,8 @@ def test_people_are_counted_by_posture_and_boxes_on_none_are_false() -> None:
         person((200.0, 0.0, 9.0, 9.0), "standing"),
     ]
     tracks = [
-        track(1, STANDING, Posture.SITTING),
-        track(2, LYING, Posture.LYING),
+        track(1, STANDING, TrackPosture.SITTING),
+        track(2, LYING, TrackPosture.LYING),
         track(3, (250.0, 9.0, 9.0, 40.0), None),
     ]
     counts, false_boxes = count(tick(people, tracks))

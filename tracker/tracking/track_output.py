@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.track import Box, FloorPlace, Posture, Track
+from peopleboy.tracker.track import Box, FloorPlace, Track, TrackPosture
 from peopleboy.tracker.tracking.motion_filter import Floats, floor_positions
 from peopleboy.tracker.tracking.sensor import ProjectedBoxes
 from peopleboy.tracker.tracking.track_state import TrackState
@@ -37,7 +37,7 @@ def output_tracks(
             status=one.status(time_s),
             age_s=time_s - one.born_s,
             occluder=one.occluder,
-            posture=None if one.posture is None else list(Posture)[int(one.posture.argmax())],
+            posture=None if one.posture is None else list(TrackPosture)[int(one.posture.argmax())],
         )
         for row, one in enumerate(tracks.items)
         if one.is_output(time_s, overlaps[row]) and any(image.is_inside[row] for image in images.values())

@@ -20,7 +20,7 @@ from peopleboy.tracker.sensors.thermal.detector.people_network import (
     USUAL,
     input_planes,
 )
-from peopleboy.tracker.track import Posture
+from peopleboy.tracker.track import TrackPosture
 
 Floats = NDArray[np.float32]
 Boxes = NDArray[np.float64]
@@ -33,14 +33,14 @@ CANVAS: Final = (192, 256)
 """Rows and columns of the training images."""
 
 _CLASSES: Final = {
-    skeleton.Posture.SITTING: Posture.SITTING,
-    skeleton.Posture.BENDING: Posture.BENDING,
-    skeleton.Posture.CROUCHING: Posture.CROUCHING,
-    skeleton.Posture.LYING: Posture.LYING,
-    skeleton.Posture.FALLEN: Posture.LYING,
+    skeleton.Posture.SITTING: TrackPosture.SITTING,
+    skeleton.Posture.BENDING: TrackPosture.BENDING,
+    skeleton.Posture.CROUCHING: TrackPosture.CROUCHING,
+    skeleton.Posture.LYING: TrackPosture.LYING,
+    skeleton.Posture.FALLEN: TrackPosture.LYING,
 }
 POSTURE_OF: Final = np.array(
-    [list(Posture).index(_CLASSES.get(posture, Posture.UPRIGHT)) for posture in skeleton.Posture]
+    [list(TrackPosture).index(_CLASSES.get(posture, TrackPosture.UPRIGHT)) for posture in skeleton.Posture]
 )
 """(9,) number of the recognised posture for each posture of a simulated person."""
 

@@ -35,7 +35,7 @@ from peopleboy.tracker.sensors.thermal.detector.people_network import (
     PeopleNetwork,
     parts_of,
 )
-from peopleboy.tracker.track import Posture
+from peopleboy.tracker.track import TrackPosture
 
 Draw = np.random.Generator
 Batch = tuple[Floats, Targets]
@@ -207,7 +207,7 @@ def _sums(outputs: jax.Array, target: jax.Array) -> jax.Array:
     miss = counted * (1.0 - heat) ** 4 * share**2 * jax.nn.softplus(outputs[..., 0])
     off = jnp.abs(outputs[..., 1 : 1 + BOX] - target[..., 3 : 3 + BOX])
     smooth = jnp.where(off < _SMOOTH, 0.5 * off * off / _SMOOTH, off - 0.5 * _SMOOTH)
-    known = jax.nn.one_hot(target[..., -1].astype(jnp.int32), len(Posture))
+    known = jax.nn.one_hot(target[..., -1].astype(jnp.int32), len(TrackPosture))
     entropy = -(known * jax.nn.log_softmax(outputs[..., 1 + BOX :])).sum(-1)
     return jnp.stack(
         [
@@ -236,7 +236,7 @@ def calibrated(network: PeopleNetwork, images: Sequence[ThermalImage]) -> People
 def evaluate_network(network: PeopleNetwork, images: Sequence[ThermalImage], *, knows_mount: bool) -> str:
     """Describe average precision, and recall and naming by posture at log-odds of 0."""
     workspace, people, found = Workspace(), [], []
-    right = np.zeros((3, len(Posture)), np.int64)  # people, detected, and named correctly
+    right = np.zeros((3, len(TrackPosture)), np.int64)  # people, detected, and named correctly
     for frame, image in enumerate(images, 1):
         mount = image.mount if knows_mount else None
         one = network.detect(image.grey, image.change, mount, _WEAKEST, workspace)
@@ -247,7 +247,7 @@ def evaluate_network(network: PeopleNetwork, images: Sequence[ThermalImage], *, 
     precision = average_precision(TrueBoxes.from_rows(people), TrackBoxes.from_rows(found))
     postures = ", ".join(
         f"{posture} {detected}/{named} of {count}"
-        for posture, count, detected, named in zip(Posture, *right.tolist(), strict=True)
+        for posture, count, detected, named in zip(TrackPosture, *right.tolist(), strict=True)
     )
     return f"AP {precision.ap:.1f}, AP50 {precision.ap50:.1f}; detected/named: {postures}"
 
@@ -263,4 +263,6 @@ def _named(
     if sure.any():
         named &= found.posture[sure].argmax(axis=1)[overlap.argmax(axis=1)] == posture
     every = np.ones_like(best)
-    return np.stack([np.bincount(posture[rows], minlength=len(Posture)) for rows in (every, best, named)])
+    return np.stack(
+        [np.bincount(posture[rows], minlength=len(TrackPosture)) for rows in (every, best, named)]
+    )

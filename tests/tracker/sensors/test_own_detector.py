@@ -15,7 +15,7 @@ from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.sensors.own_detector import FileDetector, NetworkDetector, OwnDetector
 from peopleboy.tracker.sensors.thermal.detector.people_network import NetworkDetections, PeopleNetwork
 from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
-from peopleboy.tracker.track import Posture, Status, Track
+from peopleboy.tracker.track import Status, Track, TrackPosture
 from peopleboy.tracker.trackers import WITH_DETECTOR, is_own, make_tracker
 from peopleboy.tracker.tracking.config import DetectorScoreConfig
 from peopleboy.tracker.tracking.people_tracker import PeopleTracker
@@ -283,7 +283,7 @@ class WalkingThenLying:
         self.images = 0
 
     def detect(self, *_: object) -> NetworkDetections:
-        posture = np.zeros((1, len(Posture)))
+        posture = np.zeros((1, len(TrackPosture)))
         posture[0, -1 if self.images >= 20 else 0] = 4.0
         box = np.array([WALK[self.images]])
         self.images += 1
@@ -298,9 +298,9 @@ def test_a_network_names_the_postures_of_tracks() -> None:
         [track.posture for track in tracker.update(Frame(time_s=k / 15.0, images={THERMAL: grey}))]
         for k in range(45)
     ]
-    assert named[19] == [Posture.UPRIGHT]
-    assert named[20] == [Posture.UPRIGHT]  # one image is not enough
-    assert named[44] == [Posture.LYING]
+    assert named[19] == [TrackPosture.UPRIGHT]
+    assert named[20] == [TrackPosture.UPRIGHT]  # one image is not enough
+    assert named[44] == [TrackPosture.LYING]
 
 
 def test_a_trained_network_is_read_from_its_file(tmp_path: Path) -> None:

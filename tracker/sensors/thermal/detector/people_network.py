@@ -19,7 +19,7 @@ from peopleboy.tracker.networks.convolution import Planes, Workspace, convolve, 
 from peopleboy.tracker.networks.inference import NetworkLayer, one_thread
 from peopleboy.tracker.networks.weights_archive import ArraySpec, WeightsArchive
 from peopleboy.tracker.sensors.detections import SHARED
-from peopleboy.tracker.track import Posture
+from peopleboy.tracker.track import TrackPosture
 
 Grey = NDArray[np.uint8]
 Floats = NDArray[np.float64]
@@ -37,7 +37,7 @@ SHIFT: Final = 0.25
 BOX: Final = 6
 
 
-OUTPUTS: Final = 1 + BOX + len(Posture)
+OUTPUTS: Final = 1 + BOX + len(TrackPosture)
 """Per position: log-odds, box, and log-odds of the postures."""
 
 _DEPTHS: Final = {4: 32, 8: 64, 16: 96, 32: 128}
