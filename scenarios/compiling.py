@@ -19,7 +19,8 @@ class _FirstOne(event.Listener):
             self._has_announced = True
             room = event.data["dispatcher"].__module__.removeprefix("peopleboy.")
             self._console.print(
-                f"compiling kernels of {room} and others for this processor, once; it takes up to a minute"
+                f"compiling kernels of {room} and others for this processor, once; it takes one to three "
+                "minutes"
             )
 
     def on_end(self, event: event.Event) -> None:
