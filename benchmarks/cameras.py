@@ -14,7 +14,7 @@ import click
 import numpy as np
 
 from benchmarks import call
-from benchmarks.sequences import Recording, print_head, print_row, truth_rows
+from benchmarks.compare import Recording, print_head, print_row, truth_rows
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.imaging.electronics import encode_8bit

@@ -15,10 +15,9 @@ import click
 import numpy as np
 
 from benchmarks import call
-from benchmarks.compare import false_per_1000, percents
+from benchmarks.compare import Recording, false_per_1000, percents, print_head, print_row, record
 from benchmarks.peers.detectors import Blobs
 from benchmarks.real_clips import CHOSEN_BY, RealClip, open_clips
-from benchmarks.sequences import Recording, print_head, print_row, record
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import open_views
 from peopleboy.scenarios.random_worlds.random_world import random_scenario

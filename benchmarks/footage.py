@@ -17,7 +17,7 @@ import click
 import yaml
 
 from benchmarks import call
-from benchmarks.compare import METRICS, compare, false_per_1000, percents, print_table
+from benchmarks.compare import METRICS, compare, false_per_1000, percents, print_head, print_row, print_table
 from benchmarks.real_clips import (
     CHOSEN_BY,
     PEERS,
@@ -27,7 +27,6 @@ from benchmarks.real_clips import (
     make_clip_tracker,
     open_clips,
 )
-from benchmarks.sequences import print_head, print_row
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.footage.options import TrackOptions

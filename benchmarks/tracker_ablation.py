@@ -11,8 +11,7 @@ import click
 import numpy as np
 
 from benchmarks import call
-from benchmarks.compare import percents
-from benchmarks.sequences import Recording, print_head, print_row, record
+from benchmarks.compare import Recording, percents, print_head, print_row, record
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.reproductions.contour.contour_config import TrackerConfig
 from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker

@@ -79,7 +79,7 @@ def test_the_tracks_are_theirs_and_what_they_lack_is_unknown(driven: Path, adopt
 def test_everything_takes_it(driven: Path, adopted: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_cli("evaluate", adopted) == 0
     assert run_cli("report", driven, adopted, "--out", driven.parent / "page.html") == 0
-    assert "tracks of mine are imported: their status, place and occluder are unknown" in (
+    assert "tracks of mine are imported: their status, place, occluder and posture are unknown" in (
         capsys.readouterr().err
     )
     assert "theirs.txt, imported" in (driven.parent / "page.html").read_text(encoding="utf-8")

@@ -9,6 +9,7 @@ from peopleboy.scenarios.random_worlds.random_world import random_world
 from peopleboy.studies.training.detector.worlds import (
     KINDS,
     crowded_world,
+    ordinary_world,
     with_library_span,
     with_warm_air,
     world_of,
@@ -83,7 +84,7 @@ def test_worlds_of_each_kind_have_seeds_of_their_own() -> None:
     for kind in KINDS:
         assert list(kind.seeds(1)) == [kind.first_seed]
         assert world_of(kind.first_seed + 1) == kind.draw(kind.first_seed + 1)
-    assert world_of(3) == random_world(3)
+    assert world_of(3) == ordinary_world(3)
 
 
 def test_crowds_are_learned_from_in_the_robot_s_own_span_too() -> None:

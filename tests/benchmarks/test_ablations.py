@@ -1,4 +1,4 @@
-"""Tests of the ablation of the tracker by detection."""
+"""Tests of the ablations of the detection tracker and of the contour tracker."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
+from benchmarks.compare import Recording, record
 from benchmarks.detection_ablation import LEAST, VARIANTS, DetectorOfStage, DetectorStage, thermal_finder
-from benchmarks.sequences import Recording, record
+from benchmarks.tracker_ablation import STEPS, adopt, differing, step_of, variants
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR, THESIS
 from peopleboy.tracker.sensors.detections import NO_DETECTIONS
 from peopleboy.tracker.sensors.thermal.detector.detector import PeopleDetector
 from peopleboy.tracker.sensors.thermal.thermal_sensor import ThermalSensor
@@ -58,3 +60,16 @@ def test_what_is_not_known_of_cameras_is_left_out(recording: Recording) -> None:
     assert np.shares_memory(
         recording.uncalibrated().frames[0].images[THERMAL], recording.frames[0].images[THERMAL]
     )
+
+
+def test_all_steps_together_lead_from_the_thesis_tracker_to_the_default_one() -> None:
+    steps = [config for name, config in variants() if name.startswith("+ ")]
+    assert len(steps) == len(STEPS)
+    assert steps[-1] == CONTOUR
+    assert len(set(map(repr, steps))) == len(steps)
+
+
+def test_every_setting_in_which_they_differ_belongs_to_a_step() -> None:
+    settings = list(differing(THESIS, CONTOUR))
+    assert {step_of(name) for name in settings} == set(STEPS)
+    assert adopt(THESIS, CONTOUR, settings) == CONTOUR
