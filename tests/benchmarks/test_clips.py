@@ -108,6 +108,7 @@ def test_clips_by_which_values_are_chosen_come_first_and_the_first_frames_alone_
     assert [(clip.frames, clip.given.truth.last_frame) for clip in clips] == [(5, 5), (5, 5)]
 
 
+@pytest.mark.slow
 def test_clips_are_printed_as_one_table_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     write_clip(tmp_path / "clips" / "camel_21")

@@ -11,13 +11,13 @@ from benchmarks.reliability.kills import kill_often
 from benchmarks.reliability.soak import MOST_GROWTH_MB, UsageLog, soak_environments, soak_run
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_a_run_that_is_killed_is_whole_after_it_is_run_again(tmp_path: Path) -> None:
     result = kill_often("run", 1, tmp_path, np.random.default_rng(0))
     assert result.faults == []
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_half_a_minute_and_forty_environments_need_no_more_memory() -> None:
     log = UsageLog(150)
     soak_run(1.0 / 120.0, "detection", log)
