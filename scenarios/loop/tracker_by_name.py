@@ -13,6 +13,7 @@ from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
+from peopleboy.tracker.tracker_names import split_name
 from peopleboy.tracker.trackers import TRACKERS, ChecksCameras, Tracker, is_own, make_tracker
 
 
@@ -104,7 +105,7 @@ def tracker_cameras(name: str) -> tuple[str, ...]:
 
 
 def _make(name: str, seed: int) -> Tracker:
-    if not is_own(name) and name not in TRACKERS:
+    if not is_own(name) and split_name(name)[0] not in TRACKERS:
         known = ", ".join((*TRACKERS, ORACLE))
         raise BadInput(f"unknown tracker {name!r}; choose from {known}, or your own as module:Class")
     return make_tracker(name, seed)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from peopleboy.geometry.camera_calibration import PinholeCalibration
+from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.sensors.own_detector import FileDetector, NetworkDetector, OwnDetector
 from peopleboy.tracker.sensors.thermal.detector.people_network import NetworkDetections, PeopleNetwork
@@ -312,3 +313,11 @@ def test_a_trained_network_is_read_from_its_file(tmp_path: Path) -> None:
     assert make_tracker(name).update(frame) == ()
     with refused("cannot be read", "peopleboy train people"):
         make_tracker(f"detection+{tmp_path / 'none.npz'}")
+
+
+def test_a_scenario_runs_with_a_trained_network(tmp_path: Path) -> None:
+    weights = {name: np.zeros(shape, np.float32) for name, shape in PeopleNetwork.shapes().items()}
+    PeopleNetwork(weights | {"line": np.array([1.0, -9.0], np.float32)}).save(tmp_path / "people.npz")
+    assert tracker_cameras(f"detection+{tmp_path / 'people.npz'}") == tracker_cameras("detection")
+    with refused("unknown tracker", "nobodys"):
+        tracker_cameras("nobodys+people.npz")
