@@ -19,7 +19,7 @@ class Status(StrEnum):
 
 
 class TrackPosture(StrEnum):
-    """TrackPosture of a person, as far as an image shows it; who stands or walks is upright."""
+    """Posture of a tracked person; people who stand or walk are upright."""
 
     UPRIGHT = "upright"
     SITTING = "sitting"

@@ -57,8 +57,8 @@ def _matched(
 ) -> tuple[Flags, Flags]:
     """Return which detections (N,) are right, and which are ignored.
 
-    From the most confident on, each takes the free person whom it overlaps most; an ignored person only if
-    no other is left, and without end.
+    In order of confidence, each detection matches the unmatched person with the largest overlap. Without one,
+    it may match an ignored person, who can match several detections.
     """
     is_right, is_ignored = np.zeros(len(order), np.bool_), ~fits
     is_near = pairs.iou >= overlap - _TIE

@@ -186,8 +186,8 @@ class Tracks:
     ) -> Floats:
         """Return the log-odds (G, M) that people who are found are those of the gallery, less those needed.
 
-        Colours must be known, as nothing else is sure enough after an absence of any length. A person who may
-        as well be another one of the gallery is no one of them.
+        Colours must be known, as nothing else is sure enough after an absence of any length. A detection
+        that resembles several people of the gallery is none of them.
         """
         assert self.gallery is not None
         absent = self.gallery.candidates(known)

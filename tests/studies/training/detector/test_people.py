@@ -53,7 +53,7 @@ def test_outputs_that_reach_the_target_give_the_true_boxes(shots: list[ThermalIm
         assert ((top < CANVAS[0]) & (top + height > 0)).all()
 
 
-def test_who_is_hidden_or_small_is_neither_hit_nor_miss(shots: list[ThermalImage]) -> None:
+def test_hidden_and_small_people_are_ignored(shots: list[ThermalImage]) -> None:
     for hidden in (replace(shots[0], visible=np.zeros(1)), replace(shots[0], box=shots[0].box * 0.1)):
         whole = hidden.whole * (0.1 if hidden.box[0, 3] < 10.0 else 1.0)
         samples = [

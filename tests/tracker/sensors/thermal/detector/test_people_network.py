@@ -68,7 +68,7 @@ def test_gain_and_offset_of_the_greys_cancel_out() -> None:
     np.testing.assert_allclose(one, same, atol=0.2)
 
 
-def test_the_expected_height_is_that_of_who_stands_at_a_row() -> None:
+def test_the_expected_height_is_that_of_a_person_standing_at_the_row() -> None:
     planes = input_planes(drawn_image(), drawn_image(1), MOUNT)[..., 3]
     assert (planes[:61] == 0.25).all()
     assert planes[100, 0] == pytest.approx(0.25 + 1.7 * 40.0 / 1.2 / 64.0)
