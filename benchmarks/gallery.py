@@ -49,24 +49,27 @@ class VisitWatch:
 
 
 def score(visits: Sequence[Visit]) -> dict[str, float]:
-    """Return the values of `COLUMNS` for visits in their order."""
-    right_id: dict[str, int] = {}
+    """Return the values of `COLUMNS` for visits in their order.
+
+    An id is that of the person on whom it was most often at the first visits.
+    """
+    first: dict[str, Counter[int]] = {}
     later: list[tuple[str, Counter[int]]] = []
     for visit in visits:
-        later += [(name, ids) for name, ids in visit.items() if name in right_id]
-        for name, ids in visit.items():
-            right_id.setdefault(name, ids.most_common(1)[0][0])
-    of_person = {number: name for name, number in right_id.items()}
+        later += [(name, ids) for name, ids in visit.items() if name in first]
+        first = dict(visit) | first
+    count = {(number, name): n for name, ids in first.items() for number, n in ids.items()}
+    person = {number: name for _, (number, name) in sorted((n, key) for key, n in count.items())}
     boxes = sum(ids.total() for _, ids in later)
-    right = sum(ids[right_id[name]] for name, ids in later)
-    wrong = sum(n for name, ids in later for number, n in ids.items() if of_person.get(number, name) != name)
+    right = sum(n for name, ids in later for number, n in ids.items() if person.get(number) == name)
+    new = sum(n for _, ids in later for number, n in ids.items() if number not in person)
     return {
         "later visits": len(later),
-        "right": sum(ids.most_common(1)[0][0] == right_id[name] for name, ids in later),
+        "right": sum(person.get(ids.most_common(1)[0][0]) == name for name, ids in later),
         "boxes": boxes,
         "right id": 100.0 * right / max(boxes, 1),
-        "wrong person": 100.0 * wrong / max(boxes, 1),
-        "new id": 100.0 * (boxes - right - wrong) / max(boxes, 1),
+        "wrong person": 100.0 * (boxes - right - new) / max(boxes, 1),
+        "new id": 100.0 * new / max(boxes, 1),
     }
 
 

@@ -111,6 +111,7 @@ class ReidentificationConfig:
         colour_gain: log-odds for a unit of the coefficient.
         colour_neutral: coefficient at log-odds 0.
         colour_most: greatest log-odds of colours.
+        known_gain, known_neutral: the first two for people of earlier runs.
         colour_unknown: log-odds where colours are unknown.
         uses_place: whether motion and stature count; else colours alone do, by `same`.
         walk_m, walk_m_s: standard deviation of how far a lost person is from where they were last seen, and
@@ -121,6 +122,8 @@ class ReidentificationConfig:
         statures: standard deviation of the log statures of people.
         stature_error: error of an estimate beyond its own.
         least: log-odds from which a new track is a lost one.
+        provisional_s: how long after that the track may still turn out to be of another person,
+        same_again: by a coefficient of clear appearances below this.
         unclear: how much less than these leave the identity of a new track open,
         undecided_s: for at most so long.
     """
@@ -133,6 +136,8 @@ class ReidentificationConfig:
     colour_gain: float = 10.0
     colour_neutral: float = 0.75
     colour_most: float = 2.0
+    known_gain: float = 30.0
+    known_neutral: float = 0.9
     colour_unknown: float = 0.0
     uses_place: bool = True
     walk_m: float = 0.4
@@ -143,6 +148,8 @@ class ReidentificationConfig:
     statures: float = 0.05
     stature_error: float = 0.03
     least: float = 0.0
+    provisional_s: float = 6.0
+    same_again: float = 0.7
     unclear: float = 3.0
     undecided_s: float = 0.5
 

@@ -46,6 +46,13 @@ def resolve_identity_swaps(
             _exchange(one, others[int(np.argmax(gains))])
 
 
+def is_same_again(one: TrackState, lost: TrackState, config: ReidentificationConfig) -> bool | None:
+    """Return whether a track still resembles the lost one that it continues; None if that is unclear."""
+    if not _is_clear(one, config) or not lost.colours.any():
+        return None
+    return colour_similarity(one.recent, lost.colours) > config.same_again
+
+
 class Candidates(NamedTuple):
     """People who may be the same as others: N of them.
 
@@ -95,6 +102,16 @@ def same_person_log_odds(
     return np.asarray(
         odds + _by_motion(lost, gone_s, found, config) + _by_stature(lost, found, config), np.float64
     )
+
+
+def known_person_log_odds(known: Candidates, found: Candidates, config: ReidentificationConfig) -> Floats:
+    """Return the log-odds (G, N) that people of a gallery are the ones who are found.
+
+    Colours must be known, as nothing else is sure enough after an absence of any length.
+    """
+    same, is_known = colour_similarities(known.colours, found.colours)
+    by_colour = np.minimum(config.known_gain * (same - config.known_neutral), config.colour_most)
+    return np.asarray(np.where(is_known, by_colour + _by_stature(known, found, config), -np.inf), np.float64)
 
 
 def _by_motion(lost: Candidates, gone_s: Floats, found: Candidates, config: ReidentificationConfig) -> Floats:

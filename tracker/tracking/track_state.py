@@ -10,9 +10,24 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.tracking.appearance import FEATURES, Colours, Pattern, blend_colours, colour_similarity
 from peopleboy.tracker.tracking.config import ExistenceConfig
+from peopleboy.tracker.tracking.motion_filter import StateEstimates
 
 _POSTURE_LASTS_S: Final = 3.0  # mean time until a person changes the posture
 _POSTURE_GAIN: Final = 0.4  # on log-odds: consecutive images are similar
+
+
+class Continuation(NamedTuple):
+    """That a track continues a lost one, which is provisional until their clear appearances are compared.
+
+    Attributes:
+        lost: the lost track.
+        last_seen: its state (1) of the motion filter when it was last detected.
+        time_s: when the track continued it.
+    """
+
+    lost: "TrackState"
+    last_seen: StateEstimates
+    time_s: float
 
 
 class DetectionEvidence(NamedTuple):
@@ -59,6 +74,8 @@ class TrackState:
         posture: (5,) log-odds of the postures, up to a constant; None if no sensor recognises them.
         common_m: (2,) deviation of the position across and along the line of sight that further images do not
             reduce.
+        continuation: of which lost track it is, as long as that is provisional.
+        not_ids: ids of the people that it is not.
     """
 
     key: int
@@ -85,6 +102,8 @@ class TrackState:
     separate_s: float = -math.inf
     posture: Floats | None = None
     common_m: Floats = field(default_factory=lambda: np.zeros(2))
+    continuation: Continuation | None = None
+    not_ids: frozenset[int] = frozenset()
 
     @property
     def is_confirmed(self) -> bool:
@@ -158,6 +177,15 @@ class TrackState:
         self.watched_s += before.watched_s
         self.log_odds = max(self.log_odds, before.log_odds)
         before.id, before.seen_s = 0, -math.inf
+
+    def begin_again(self) -> None:
+        """End a mistaken continuation: the track is of another person, and tentative again."""
+        assert self.continuation is not None
+        lost, _, time_s = self.continuation
+        self.not_ids |= {lost.id}
+        self.id, self.born_s, self.confirmed_s = 0, time_s, math.inf
+        self.colours, self.watched_s = self.recent, self.watched_s - lost.watched_s
+        self.continuation = None
 
     def recognise(self, number: int, colours: Colours) -> None:
         """Continue a person of an earlier run, of this id and these colours, as this track."""

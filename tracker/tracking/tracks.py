@@ -1,6 +1,7 @@
 """The tracks of the people tracker, and their life: initiated, confirmed or re-identified, deleted."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import count
 
 import numpy as np
@@ -8,7 +9,6 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.tracking.appearance import colour_similarities
 from peopleboy.tracker.tracking.association import CLEAR, shared_area
 from peopleboy.tracker.tracking.config import KalmanConfig, ReidentificationConfig
 from peopleboy.tracker.tracking.motion_filter import NO_STATES, Floats, StateEstimates, predict
@@ -16,11 +16,13 @@ from peopleboy.tracker.tracking.people_gallery import KnownPerson, PeopleGallery
 from peopleboy.tracker.tracking.reidentification import (
     Candidates,
     assign_lost,
+    is_same_again,
+    known_person_log_odds,
     resolve_identity_swaps,
     same_person_log_odds,
 )
 from peopleboy.tracker.tracking.sensor import Predictions, SensorDetections
-from peopleboy.tracker.tracking.track_state import TrackState
+from peopleboy.tracker.tracking.track_state import Continuation, TrackState
 from peopleboy.tracker.tracking.viewpoint import Position
 
 
@@ -47,6 +49,10 @@ class Tracks:
         before = predict(self.states, 0.0, moved, config)
         self.states = predict(self.states, dt_s, moved, config)
         self.last_seen = predict(self.last_seen, 0.0, moved, config)
+        for one in self.items:
+            if one.continuation is not None:
+                last_seen = predict(one.continuation.last_seen, 0.0, moved, config)
+                one.continuation = one.continuation._replace(last_seen=last_seen)
         return before
 
     def predictions(self) -> Predictions:
@@ -147,11 +153,27 @@ class Tracks:
 
     def settle(self, time_s: float, config: ReidentificationConfig) -> None:
         """Confirm, re-identify and delete tracks."""
+        self._verify_continuations(time_s, config)
         self._reidentify(time_s, config)
         resolve_identity_swaps(self.items, time_s, config)
         self._update_gallery()
         kept = [row for row, one in enumerate(self.items) if not one.is_deleted(time_s)]
         self._keep(np.array(kept, int))
+
+    def _verify_continuations(self, time_s: float, config: ReidentificationConfig) -> None:
+        """End continuations of lost tracks by other people, whose appearance was unclear at first."""
+        for one in list(self.items):
+            found = one.continuation
+            if found is None:
+                continue
+            is_same = is_same_again(one, found.lost, config)
+            if is_same is False:
+                one.begin_again()
+                self.items.append(found.lost)
+                self.states = self.states.joined(found.last_seen)
+                self.last_seen = self.last_seen.joined(found.last_seen)
+            elif is_same or time_s - found.time_s > config.provisional_s:
+                one.continuation = None
 
     def _reidentify(self, time_s: float, config: ReidentificationConfig) -> None:
         """Let new tracks continue lost ones, or confirm them as new people."""
@@ -173,35 +195,40 @@ class Tracks:
             parts = [self.odds_of_lost(lost, found, time_s, config)] if lost else []
             parts += [self._odds_of_known(known, found, config)] if known else []
             odds = np.concatenate(parts)
+            ids = [items[row].id for row in lost] + known
+            excluded = [[number in items[row].not_ids for row in fresh] for number in ids]
+            odds[np.array(excluded)] = -np.inf
             before, is_open = assign_lost(odds), odds.max(axis=0) > -config.unclear
         for number, row in enumerate(fresh):
             one = items[row]
             if number in before:
-                self._continue(one, before[number], lost, known)
+                self._continue(one, before[number], lost, known, time_s)
             elif not one.is_confirmed and not (is_open[number] and time_s - one.born_s < config.undecided_s):
                 self._confirm(one, time_s)
 
     def _odds_of_known(
         self, known: Sequence[int], found: Candidates, config: ReidentificationConfig
     ) -> Floats:
-        """Return the log-odds (G, M) that people who are found are those of the gallery, less those needed.
+        """Return the log-odds (G, M) that people who are found are those of the gallery.
 
-        Colours must be known, as nothing else is sure enough after an absence of any length. A detection
-        that resembles several people of the gallery is none of them.
+        A detection that resembles several people of the gallery is none of them.
         """
         assert self.gallery is not None
-        absent = self.gallery.candidates(known)
-        odds = same_person_log_odds(absent, np.zeros(len(known)), found, config)
-        is_known = colour_similarities(absent.colours, found.colours)[1]
-        share = np.where(is_known, np.exp(odds), 0.0)
-        return np.where(is_known, odds - np.log1p(share.sum(axis=0) - share), -np.inf)
+        odds = known_person_log_odds(self.gallery.candidates(known), found, config)
+        share = np.exp(odds)
+        return np.asarray(odds - np.log1p(share.sum(axis=0) - share))
 
-    def _continue(self, one: TrackState, before: int, lost: Sequence[int], known: Sequence[int]) -> None:
+    def _continue(
+        self, one: TrackState, before: int, lost: Sequence[int], known: Sequence[int], time_s: float
+    ) -> None:
         """Let a new track continue a lost track or, after all of these, a person of the gallery."""
         if self.gallery is not None and one.is_confirmed:
             self.gallery.people.pop(one.id, None)  # it was not a new person
         if before < len(lost):
-            one.inherit(self.items[lost[before]])
+            row = lost[before]
+            last_seen = self.last_seen.take(np.array([row]))
+            one.continuation = Continuation(replace(self.items[row], continuation=None), last_seen, time_s)
+            one.inherit(self.items[row])
         elif self.gallery is not None:
             number = known[before - len(lost)]
             one.recognise(number, self.gallery.people[number].colours)
@@ -213,7 +240,12 @@ class Tracks:
         for one, mean, covariance in zip(
             self.items, self.last_seen.mean, self.last_seen.covariance, strict=True
         ):
-            if one.is_confirmed and one.watched_s > one.existence.brief_s and one.colours.any():
+            if (
+                one.continuation is None
+                and one.is_confirmed
+                and one.watched_s > one.existence.brief_s
+                and one.colours.any()
+            ):
                 known = KnownPerson(one.colours, float(mean[6]), float(covariance[6, 6]))
                 self.gallery.people[one.id] = known
 

@@ -10,7 +10,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.tracking.appearance import FEATURES, Colours
 from peopleboy.tracker.tracking.config import ReidentificationConfig
 from peopleboy.tracker.tracking.people_gallery import KnownPerson, PeopleGallery, read_gallery
-from peopleboy.tracker.tracking.reidentification import same_person_log_odds
+from peopleboy.tracker.tracking.reidentification import known_person_log_odds
 
 
 def colours(seed: int) -> Colours:
@@ -83,7 +83,7 @@ def test_a_person_of_unknown_place_is_recognised_by_colours_and_stature() -> Non
     seen = people._replace(
         places_m=np.array([[2.0, 4.0], [-3.0, 9.0]]), variance_m2=np.tile(0.01 * np.eye(2), (2, 1, 1))
     )
-    odds = same_person_log_odds(people, np.zeros(2), seen, ReidentificationConfig())
+    odds = known_person_log_odds(people, seen, ReidentificationConfig())
     assert (np.diag(odds) > 1.0).all()
     assert odds[0, 1] < 0.0
     assert odds[1, 0] < 0.0

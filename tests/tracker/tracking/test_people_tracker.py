@@ -189,6 +189,38 @@ def test_who_comes_back_elsewhere_in_the_same_colours_keeps_the_number_and_nobod
     assert numbers(seen[-1]) == {number}
 
 
+BLACK = (0, 0, 0)  # too dark to compare
+Part = tuple[int, float | None, tuple[int, int, int]]
+"""Number of frames, where a person stands to the right [m] (None for nobody there), and the clothes."""
+LEAVES, HIDDEN_CLOTHES = [(40, 0.0, RED), (8, None, RED)], (6, 0.3, BLACK)
+
+
+def tracked_parts(parts: Sequence[Part]) -> list[tuple[Track, ...]]:
+    boxes = [[] if at_m is None else [standing(at_m)] for count, at_m, _ in parts for _ in range(count)]
+    clothes = [colour for count, _, colour in parts for _ in range(count)]
+    tracker = PeopleTracker((fixed_sensor(FixedDetections(boxes)),))
+    shots = (next(frames([here], (colour,))) for here, colour in zip(boxes, clothes, strict=True))
+    return [
+        tracker.update(replace(shot, time_s=number / RATE_HZ, calibrations={THERMAL: CAMERA}))
+        for number, shot in enumerate(shots)
+    ]
+
+
+@pytest.mark.parametrize(("clothes", "ids"), [(RED, {1}), (BLUE, {2})])
+def test_a_person_at_the_place_of_a_lost_one_gets_another_id_once_the_clothes_are_seen(
+    clothes: tuple[int, int, int], ids: set[int]
+) -> None:
+    seen = tracked_parts([*LEAVES, HIDDEN_CLOTHES, (25, 0.3, clothes)])
+    assert numbers(seen[53]) == {1}
+    assert numbers(seen[-1]) == ids
+
+
+def test_a_lost_person_whose_id_another_one_had_for_a_moment_gets_it_back() -> None:
+    seen = tracked_parts([*LEAVES, HIDDEN_CLOTHES, (20, 0.3, BLUE), (8, None, BLUE), (20, 0.0, RED)])
+    assert numbers(seen[73]) == {2}
+    assert numbers(seen[-1]) == {1}
+
+
 def test_who_is_behind_somebody_is_said_to_be_hidden_by_them() -> None:
     front = walker(160.0, 150.0)
     boxes = [
