@@ -51,6 +51,25 @@ def outline(image: NDArray[Any]) -> Floats:
     return np.array([-0.5, -0.5, columns, rows])
 
 
+def add_edge_noise(box: Floats, deviation_px: float, rng: np.random.Generator) -> Floats:
+    """Move the four edges of boxes (N, 4) independently, as a person does who draws them by hand.
+
+    Moved boxes are at least 1 px wide and high.
+
+    Args:
+        box: the boxes; they stay the same with a deviation of 0.
+        deviation_px: standard deviation of the normal noise of each edge.
+        rng: random numbers.
+    """
+    if deviation_px == 0.0:
+        return box
+    noise = deviation_px * rng.standard_normal(box.shape)
+    moved = box + noise
+    moved[:, 2:] -= noise[:, :2]
+    moved[:, 2:] = np.maximum(moved[:, 2:], 1.0)
+    return moved
+
+
 def within_image(box: Floats, width_px: int, height_px: int) -> Floats:
     """Clip boxes (..., 4) to the borders of an image; boxes outside get no area.
 

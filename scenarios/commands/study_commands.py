@@ -49,7 +49,15 @@ def datasets(suites: Sequence[str], frame_cache: Path, output: Output) -> None:
 
 @click.command(cls=FieldsCommand)
 @click.argument("names", metavar="[ID]...", nargs=-1)
-@options_of("studies.reproductions.runner:ReproduceOptions", "paper", "quick", "seeds", "out", "so_far")
+@options_of(
+    "studies.reproductions.runner:ReproduceOptions",
+    "paper",
+    "quick",
+    "seeds",
+    "out",
+    "label_noise_px",
+    "so_far",
+)
 @frame_cache_option
 @workers_options
 @click.option("--list", "lists", is_flag=True, help="List the tables and figures without reproducing them.")

@@ -59,6 +59,7 @@ class Plan:
         presets: depth cameras of the sequences.
         absences: seeds of each scenario in which a person leaves and comes back.
         follows: seeds of runs in which the robot follows such a person.
+        label_noise_px: [px] standard deviation of noise at the edges of ground-truth boxes.
     """
 
     cache: Path
@@ -81,6 +82,7 @@ class Plan:
     presets: tuple[str, ...] = PRESETS
     absences: int = 10
     follows: int = 20
+    label_noise_px: float = 0.0
 
     def runs(self, suites: Iterable[str]) -> list[SuiteRun]:
         """Return the runs of data sets, one after the other."""

@@ -5,7 +5,7 @@ import math
 import shlex
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Annotated, Any, Final
 
@@ -179,6 +179,15 @@ class ReproduceOptions:
             "runs/reproduce-quick]"
         ),
     ] = None
+    label_noise_px: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=50.0,
+            description="Standard deviation [px] of noise at the edges of ground-truth boxes, as if drawn by "
+            "hand. It applies to the thesis (2007) and the paper of 2005.",
+        ),
+    ] = 0.0
     films: Path
     so_far: Annotated[
         bool,
@@ -219,9 +228,11 @@ def reproduce_named(
     # Workers may have another working directory.
     cache = options.films.resolve()
     plan = quick_plan(cache) if repeats is None else full_plan(cache, repeats)
+    plan = replace(plan, label_noise_px=options.label_noise_px)
     chosen = [] if paper is None else ["--paper", paper]
     fewer = [] if repeats == REPEATS else ["--quick"] if repeats is None else ["--seeds", str(repeats)]
-    command = shlex.join(["peopleboy", "reproduce", *chosen, *fewer, *names])
+    noise = ["--label-noise-px", f"{options.label_noise_px:g}"] if options.label_noise_px else []
+    command = shlex.join(["peopleboy", "reproduce", *chosen, *fewer, *noise, *names])
     means = Means(out=options.folder, workers=workers, command=command)
     return reproduce(experiments, plan, means, so_far=options.so_far)
 

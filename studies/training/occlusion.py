@@ -30,7 +30,7 @@ from peopleboy.studies.training.weak_classifiers import (
     best_stump,
     weighted_sums,
 )
-from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.boxes import add_edge_noise, iou
 from peopleboy.tracker.reproductions.contour.contour_config import TrackerConfig
 from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.reproductions.contour.occlusion.depth_order import (
@@ -188,8 +188,12 @@ def is_in_front(one: PersonTruth, other: PersonTruth) -> bool | None:
     return gap > 0.0 if abs(gap) >= _LEAST_GAP_M else None
 
 
-def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> PairSamples:
+def collect_pairs(
+    scenario: str, seed: int, config: TrackerConfig, label_noise_px: float = 0.0
+) -> PairSamples:
     """Run a tracker through a scenario, and collect its features of overlapping people.
+
+    Tracks match people by ground-truth boxes, whose edges get noise of this deviation [px].
 
     Raises:
         BadInput: an unknown scenario.
@@ -201,12 +205,16 @@ def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> PairSample
     loaded = load_scenario(scenario)
     order, episodes = RecordingOrder(config.depth.remembers_feet), Episodes()
     people = ContourTracker(config, stream(seed, "tracker"), order)
+    labels = stream(seed, f"labels {scenario}")
     rows: list[PairRow] = []
     with SimulatedWorld(loaded.world(seed)) as world:
         frames = round(loaded.duration_s * world.config.control_hz)
         for tick in closed_loop(world, people, loaded.make_behaviour(), frames):
+            boxed = [person for person in tick.truth.people if person.box is not None]
+            boxes = np.array([person.box for person in boxed], np.float64).reshape(-1, 4)
+            boxes = add_edge_noise(boxes, label_noise_px, labels)
             for *pair, features in order.asked:
-                one, other = (_true_person(figure, tick.truth.people) for figure in pair)
+                one, other = (_true_person(figure, boxed, boxes) for figure in pair)
                 if one is None or other is None or one is other:
                     continue
                 is_front = is_in_front(one, other)
@@ -216,14 +224,15 @@ def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> PairSample
     return PairSamples.from_rows(loaded.name, seed, rows)
 
 
-def _true_person(figure: ExpectedPerson, people: Sequence[PersonTruth]) -> PersonTruth | None:
+def _true_person(
+    figure: ExpectedPerson, people: Sequence[PersonTruth], boxes: NDArray[np.float64]
+) -> PersonTruth | None:
     """Return the person whose box a track overlaps most; None if the overlap is too small."""
-    boxed = [person for person in people if person.box is not None]
-    if not boxed:
+    if not people:
         return None
-    overlap = iou(np.array([person.box for person in boxed]), np.asarray(figure.region, np.float64))
+    overlap = iou(boxes, np.asarray(figure.region, np.float64))
     best = int(np.argmax(overlap))
-    return boxed[best] if overlap[best] >= _LEAST_IOU else None
+    return people[best] if overlap[best] >= _LEAST_IOU else None
 
 
 def accuracy(table: LearnedTable, samples: PairSamples) -> float:

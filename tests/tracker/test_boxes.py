@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from trackeval.datasets._base_dataset import _BaseDataset
 
 from peopleboy.tracker.boxes import (
+    add_edge_noise,
     area,
     corners,
     image_shares,
@@ -108,3 +109,22 @@ def test_corners_and_shares_of_the_image_are_those_of_the_box():
     assert corners(box) == (-0.5, 59.5, 319.5, 179.5)
     assert image_shares(box, 320, 240) == (0.0, 0.5, 0.25, 0.75)
     assert image_shares((319.0, -0.5, 1.0, 240.0), 320, 240) == (1.0, 1.0, 0.0, 1.0)
+
+
+def test_noise_moves_each_edge_independently_by_its_deviation() -> None:
+    boxes = np.tile([100.0, 50.0, 40.0, 120.0], (40_000, 1))
+    moved = add_edge_noise(boxes, 2.0, np.random.default_rng(0))
+    left, top, width, height = (moved - boxes).T
+    edges = np.stack([left, top, left + width, top + height])
+    # The covariance of four independent edges; widths and heights vary by two edges.
+    assert_allclose(np.cov(edges), 4.0 * np.eye(4), atol=0.1)
+    assert_allclose(edges.mean(axis=1), 0.0, atol=0.04)
+    assert_allclose([width.std(), height.std()], 2.0 * np.sqrt(2.0), atol=0.04)
+
+
+def test_without_noise_boxes_stay_and_with_it_they_keep_an_area() -> None:
+    boxes = random_boxes(0, 100)
+    assert add_edge_noise(boxes, 0.0, np.random.default_rng(0)) is boxes
+    moved, again = (add_edge_noise(boxes, 30.0, np.random.default_rng(1)) for _ in range(2))
+    assert (moved == again).all()
+    assert (moved[:, 2:] >= 1.0).all()

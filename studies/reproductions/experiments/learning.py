@@ -97,7 +97,7 @@ def _learned(
     collected = using.grouped(
         {
             tracker: [
-                Unit.of(measure_pairs, scenario, seed, setting)
+                pairs_unit(scenario, seed, setting, plan.label_noise_px)
                 for seed in range(plan.pair_seeds)
                 for scenario in SCENES
             ]
@@ -118,18 +118,25 @@ def _learned(
     return {tracker: len(found) for tracker, found in examples.items()}, using.grouped(units)
 
 
+def pairs_unit(scenario: str, seed: int, setting: TrackerSetting, label_noise_px: float) -> Unit:
+    """Return the unit that collects the pairs of one run."""
+    labels = (label_noise_px,) if label_noise_px else ()
+    return Unit.of(measure_pairs, scenario, seed, setting, *labels)
+
+
 def learn_unit(way: Classifiers, plan: Plan, examples: PairSamples, tracker: str, split: int) -> Unit:
     """Return the unit that trains on one split of a tracker's samples."""
+    labels = f", labels {plan.label_noise_px:g} px" if plan.label_noise_px else ""
     key = (
         f"learn {','.join(way.features)} by {way.most} | {len(examples)} pairs of {TRACKERS[tracker].key}, "
-        f"{plan.rounds} rounds | {split}"
+        f"{plan.rounds} rounds{labels} | {split}"
     )
     return Unit(key, learn_pairs, (tuple(way.features), way.most, plan.rounds, split, examples))
 
 
-def measure_pairs(scenario: str, seed: int, setting: TrackerSetting) -> Result:
+def measure_pairs(scenario: str, seed: int, setting: TrackerSetting, label_noise_px: float = 0.0) -> Result:
     """Run a tracker on a scenario, and return its measurements of people who overlap."""
-    return collect_pairs(scenario, seed, setting.config()).to_plain()
+    return collect_pairs(scenario, seed, setting.config(), label_noise_px).to_plain()
 
 
 def learn_pairs(

@@ -18,7 +18,7 @@ from peopleboy.scenarios.scores.suite_table import count
 from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 from peopleboy.studies.reproductions.experiments.playback import unbroken
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
-from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.boxes import add_edge_noise, iou
 from peopleboy.tracker.evaluation.area_metrics import PaperMetrics, ThesisMetrics
 from peopleboy.tracker.evaluation.box_matching import GATE, associate, counts, pair_up
 from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
@@ -57,11 +57,23 @@ def count_sequence(run: SuiteRun, cache: Path) -> Result:
     return asdict(count(shot.people(), shot.frames, rate_hz))
 
 
-def score_sequence(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int) -> Result:
+def labels_of(shot: Film, run: SuiteRun, label_noise_px: float) -> TrueBoxes:
+    """Return the ground truth of a sequence, with noise of this deviation [px] at the edges of its boxes.
+
+    A sequence is labelled once: its noise depends neither on the tracker nor on the repeat.
+    """
+    truth = shot.truth()
+    rng = stream(run.seed, f"labels {run.scenario.name}")
+    return replace(truth, box=add_edge_noise(truth.box, label_noise_px, rng))
+
+
+def score_sequence(
+    run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int, label_noise_px: float = 0.0
+) -> Result:
     """Track a sequence with the repeat's random stream, and score it by each counting rule."""
     shot = film(run.scenario, run.seed, cache)
     found, is_in_range = track_sequence(shot, setting.make(stream(repeat, "reproduce.tracker")))
-    people, truth = shot.people(), shot.truth()
+    people, truth = shot.people(), labels_of(shot, run, label_noise_px)
     rows = zip(*(people[name].to_pylist() for name in ("frame", "id", "distance_m")), strict=True)
     known = {(frame, person): distance for frame, person, distance in rows}
     keys = zip(truth.frame.tolist(), truth.id.tolist(), strict=True)
@@ -120,7 +132,9 @@ def _is_in_range(track: Track, frame: Frame) -> bool:
     return COUNTED_NEAREST_M <= distance_m <= COUNTED_FARTHEST_M
 
 
-def measure_delay(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int) -> Result:
+def measure_delay(
+    run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int, label_noise_px: float = 0.0
+) -> Result:
     """Start a tracker many times in one sequence, each time while a person is clearly visible.
 
     Returns:
@@ -128,7 +142,7 @@ def measure_delay(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: i
         first frame.
     """
     shot = film(run.scenario, run.seed, cache)
-    truth = shot.truth()
+    truth = labels_of(shot, run, label_noise_px)
     starts = set(plain_starts(truth))
     boxes = dict(zip(truth.frame.tolist(), truth.box, strict=True))
     rng = stream(repeat, "reproduce.delay")

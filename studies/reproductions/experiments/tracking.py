@@ -43,8 +43,8 @@ CONTENTS: Final = {
 }
 """Columns of the thesis's table 3.1."""
 
-Work = Callable[[SuiteRun, Path, TrackerSetting, int], Result]
-"""Measures a tracker on a sequence, with a repeat's random stream."""
+Work = Callable[[SuiteRun, Path, TrackerSetting, int, float], Result]
+"""Measures a tracker on a sequence, with a repeat's random stream and the noise of labels [px]."""
 Row = Callable[[Sequence[Result], str], Sequence[float]]
 """Computes the columns from results of sequences, by a counting rule."""
 Record = TypeVar("Record", bound=Sums)
@@ -193,15 +193,25 @@ def sequence_units(
     trial: TrackerTrial, plan: Plan, repeat: int, work: Work = scores.score_sequence
 ) -> list[Unit]:
     """Return a repeat's units of a trial: a tracker on each sequence, with one random stream."""
-    return [sequence_unit(run, plan.cache, trial.setting, repeat, work) for run in plan.runs(trial.suites)]
+    return [
+        sequence_unit(run, plan.cache, trial.setting, repeat, work, label_noise_px=plan.label_noise_px)
+        for run in plan.runs(trial.suites)
+    ]
 
 
 def sequence_unit(
-    run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int, work: Work = scores.score_sequence
+    run: SuiteRun,
+    cache: Path,
+    setting: TrackerSetting,
+    repeat: int,
+    work: Work = scores.score_sequence,
+    *,
+    label_noise_px: float = 0.0,
 ) -> Unit:
     """Return the unit that runs a tracker on one sequence."""
-    key = f"{work.__name__} {_run_key(run)} | {setting.key} | {repeat}"
-    return Unit(key, work, (run, cache, setting, repeat))
+    labels = f" | labels {label_noise_px:g} px" if label_noise_px else ""
+    key = f"{work.__name__} {_run_key(run)} | {setting.key} | {repeat}{labels}"
+    return Unit(key, work, (run, cache, setting, repeat, label_noise_px))
 
 
 def _run_key(run: SuiteRun) -> str:

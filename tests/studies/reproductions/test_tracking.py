@@ -48,7 +48,7 @@ from peopleboy.studies.reproductions.experiments.tracking import (
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.studies.reproductions.units import Measurement, Unfinished
-from peopleboy.tracker.evaluation.area_metrics import PaperMetrics
+from peopleboy.tracker.evaluation.area_metrics import PaperMetrics, ThesisMetrics
 from peopleboy.tracker.evaluation.evaluate import evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
@@ -74,6 +74,22 @@ def test_a_unit_gives_the_same_result_again_and_its_sums_come_back(tmp_path: Pat
     restored_paper = restored(PaperMetrics, one[USUAL]["paper"])
     assert restored_paper.areas.targets == one[USUAL]["counts"]["targets"] > 0
     assert set(RECORDS) == set(one[STRICT])
+
+
+@pytest.mark.slow
+def test_noise_of_labels_lowers_areas_and_without_it_nothing_changes(tmp_path: Path) -> None:
+    play, setting = SuiteRun(load_scenario("crossing_pair").lasting(3.0), 0), TrackerSetting("contour")
+    plain, unnoisy, noisy, again = (
+        sequence_unit(play, tmp_path, setting, 0, **noise)
+        for noise in ({}, {"label_noise_px": 0.0}, {"label_noise_px": 4.0}, {"label_noise_px": 4.0})
+    )
+    assert plain.key == unnoisy.key != noisy.key
+    exact, labelled = unnoisy.run(), noisy.run()
+    assert exact == plain.run()
+    assert labelled == again.run()
+    areas = [restored(ThesisMetrics, one[USUAL]["thesis"]) for one in (exact, labelled)]
+    assert areas[0].ar > areas[1].ar
+    assert areas[0].ap > areas[1].ap
 
 
 CAMERA_X_M = 0.5
