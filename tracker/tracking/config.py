@@ -133,8 +133,8 @@ class ReidentificationConfig:
     parted_s: float = 0.5
     margin: float = 0.2
     same: float = 0.8
-    colour_gain: float = 10.0
-    colour_neutral: float = 0.75
+    colour_gain: float = 16.0
+    colour_neutral: float = 0.8
     colour_most: float = 2.0
     known_gain: float = 30.0
     known_neutral: float = 0.9
