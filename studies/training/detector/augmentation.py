@@ -21,7 +21,9 @@ Draw = np.random.Generator
 _SPANNED: Final = 0.5
 _NEGATED: Final = 0.15  # a camera that shows hot objects dark, or people colder than the background
 _FAINT: Final = 0.15  # hotter and colder objects take up most of the grey range
-_SOFT: Final = 0.3
+_SOFT: Final = 0.5
+_TEXTURED: Final = 0.35
+_DIMMED: Final = 0.3
 _CROPPED: Final = 0.3
 _CROPPED_AT_THE_FEET: Final = 0.7  # of the cropped images; the others are cropped at the head
 _MOST_CROPPED: Final = 0.4  # of the height
@@ -30,10 +32,15 @@ _TALL_PX: Final = 36.0  # least height of a person at whose head or feet an imag
 _MOST_BLACK: Final = 0.97
 _LEAST_SPAN: Final = 60.0  # [grey]
 _GAINS: Final = (0.6, 1.6)
-_BLURS_PX: Final = (0.4, 1.6)
+_BLURS_PX: Final = (0.4, 2.2)
 _MOST_NOISE: Final = 4.0  # [grey]
 _CURVES: Final = (-0.6, 0.6)  # logarithm of the power
 _FAINT_GAINS: Final = (0.15, 0.6)
+_MOST_TEXTURE: Final = 18.0  # [grey]
+_OCTAVES_PX: Final = (3, 7, 16, 40)
+_DIM_GAINS: Final = (0.2, 1.0)
+_DARK: Final = 0.25  # share of the dimmed people who become darker than their surroundings
+_RING: Final = 0.15  # width of the surroundings, in heights
 
 
 def augment(image: ThermalImage, rng: Draw) -> ThermalImage:
@@ -54,7 +61,11 @@ def mirror(image: ThermalImage) -> ThermalImage:
 
 
 def recolour(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Change greys with some probability: negate, degrade, change the span, or reduce contrast."""
+    """Change greys, each with some probability: dim people, add texture, negate, soften, change the span."""
+    if rng.random() < _DIMMED:
+        image = dim_people(image, rng)
+    if rng.random() < _TEXTURED:
+        image = add_texture(image, rng)
     if rng.random() < _NEGATED:
         image = replace(image, grey=255 - image.grey)
     if rng.random() < _SOFT:
@@ -62,6 +73,50 @@ def recolour(image: ThermalImage, rng: Draw) -> ThermalImage:
     if rng.random() < _SPANNED:
         return change_span(image, rng)
     return _fade(image, rng) if rng.random() < _FAINT else image
+
+
+def dim_people(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Reduce the contrast of each person with the surroundings, as with thick clothes or in the sun."""
+    grey, change = image.grey.astype(np.float64), image.change.astype(np.float64)
+    for left, top, width, height in image.whole.tolist():
+        gain = rng.uniform(*_DIM_GAINS)
+        sign = -1.0 if rng.random() < _DARK else 1.0
+        rows, columns = slice(*_span(top, height, len(grey))), slice(*_span(left, width, grey.shape[1]))
+        here, changed = grey[rows, columns], change[rows, columns]
+        if not here.size:
+            continue
+        edge = np.concatenate([here[:, 0], here[:, -1], here[0]])
+        v = (np.arange(rows.start, rows.stop) - top - height / 2.0) / (height / 2.0)
+        u = (np.arange(columns.start, columns.stop) - left - width / 2.0) / (width / 2.0)
+        inside = _fall(v)[:, None] * _fall(u)[None]
+        factor = 1.0 + inside * (sign * gain - 1.0)
+        surroundings = float(np.median(edge))
+        here[:] = surroundings + factor * (here - surroundings)
+        changed *= np.abs(factor)
+    return replace(image, grey=_to_grey(grey), change=_to_grey(change))
+
+
+def _span(begin: float, length: float, most: int) -> tuple[int, int]:
+    margin = _RING * length
+    low, high = (int(np.clip(edge, 0, most)) for edge in (begin - margin, begin + length + margin + 1.0))
+    return low, high
+
+
+def _fall(off: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return weights that fall from 1 inside to 0 at the margin's end, for offsets in half lengths."""
+    return np.asarray(np.clip((1.0 + 2.0 * _RING - np.abs(off)) / (2.0 * _RING), 0.0, 1.0))
+
+
+def add_texture(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Add random texture of several scales, as of foliage, gravel and facades."""
+    rows, columns = image.grey.shape
+    texture = np.zeros((rows, columns))
+    for length in _OCTAVES_PX:
+        coarse = rng.normal(0.0, rng.uniform(0.0, 1.0), (rows // length + 2, columns // length + 2))
+        texture += cv2.resize(coarse, (columns, rows), interpolation=cv2.INTER_CUBIC)
+    level = rng.uniform(0.0, _MOST_TEXTURE) / max(float(texture.std()), 1e-6)
+    patchy = cv2.resize(rng.uniform(0.0, 1.0, (3, 4)), (columns, rows))
+    return replace(image, grey=_to_grey(image.grey + level * patchy * texture))
 
 
 def soften(image: ThermalImage, rng: Draw) -> ThermalImage:
