@@ -26,7 +26,12 @@ from peopleboy.studies.reproductions.experiments import (
     sliding_windows,
     tracking,
 )
-from peopleboy.studies.reproductions.pictures import panoramic_figures, situation_figures, tracking_figures
+from peopleboy.studies.reproductions.pictures import (
+    panoramic_figures,
+    single_person_figures,
+    situation_figures,
+    tracking_figures,
+)
 from peopleboy.studies.reproductions.units import Measurement, Unit
 
 SOURCES: Final[Mapping[str, str]] = {
@@ -41,7 +46,7 @@ FOLDER: Final = Path(__file__).with_name("sources")
 
 _MODULES: Final = (
     *(tracking, computing_time, learning, panoramic_room, drives, sliding_windows, scenes, attention),
-    *(tracking_figures, panoramic_figures, situation_figures),
+    *(tracking_figures, single_person_figures, panoramic_figures, situation_figures),
 )
 
 

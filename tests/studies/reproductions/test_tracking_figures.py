@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.studies.reproductions.experiments.playback import unbroken
+from peopleboy.studies.reproductions.pictures.single_person_figures import filtered_images
 from peopleboy.studies.reproductions.pictures.tracking_figures import (
     CANDIDATES,
     MATCHES,
@@ -14,7 +15,7 @@ from peopleboy.studies.reproductions.pictures.tracking_figures import (
     shared,
 )
 from peopleboy.tracker.reproductions.contour.particles import draw_prior
-from peopleboy.tracker.reproductions.contour.variants import THESIS
+from peopleboy.tracker.reproductions.contour.variants import THESIS, THESIS_SINGLE
 
 
 @pytest.mark.parametrize(
@@ -55,3 +56,11 @@ def test_the_example_of_metrics_is_as_the_equations_say() -> None:
         (200 / 3, 200 / 3, 200 / 3)
     )  # equations 3.1 to 3.3
     assert found.aa == pytest.approx(100 * 2 * both / (targets + candidates))  # equation 3.6
+
+
+def test_the_single_filter_is_drawn_with_all_its_samples_inside_the_image() -> None:
+    *_, last = filtered_images("single_stationary", 0.5)
+    assert last.time_s == pytest.approx(0.5, abs=0.07)
+    assert last.middles.shape == (THESIS_SINGLE.person.count, 2)
+    assert (last.middles >= 0.0).all()
+    assert (last.middles < np.array(last.grey.shape[::-1])).all()
