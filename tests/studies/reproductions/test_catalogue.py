@@ -18,7 +18,23 @@ from tests.helpers.calls.refused import refused
 from tests.helpers.made_up_results import declaration, trials_of
 
 FIGURES = (
-    *("3.4", "3.5", "4.4", "4.8", "4.9a", "4.9b", "5.3", "5.4", "5.5a", "5.5b", "5.6"),
+    *(
+        "3.4",
+        "3.5",
+        "4.1",
+        "4.4",
+        "4.5",
+        "4.7",
+        "4.8",
+        "4.9a",
+        "4.9b",
+        "4.10",
+        "5.3",
+        "5.4",
+        "5.5a",
+        "5.5b",
+        "5.6",
+    ),
     *("6.4", "6.5", "6.6", "7.2", "7.3"),
 )
 
