@@ -167,7 +167,9 @@ class Tracks:
             if found is None:
                 continue
             is_same = is_same_again(one, found.lost, config)
-            if is_same is False:
+            if one.id != found.lost.id:  # an exchange of identities has decided it
+                one.continuation = None
+            elif is_same is False:
                 one.begin_again()
                 self.items.append(found.lost)
                 self.states = self.states.joined(found.last_seen)
