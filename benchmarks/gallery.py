@@ -51,7 +51,7 @@ class VisitWatch:
 def score(visits: Sequence[Visit]) -> dict[str, float]:
     """Return the values of `COLUMNS` for visits in their order.
 
-    An id is that of the person on whom it was most often at the first visits.
+    An id belongs to the person with most of its boxes at the first visits.
     """
     first: dict[str, Counter[int]] = {}
     later: list[tuple[str, Counter[int]]] = []

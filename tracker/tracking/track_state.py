@@ -17,7 +17,7 @@ _POSTURE_GAIN: Final = 0.4  # on log-odds: consecutive images are similar
 
 
 class Continuation(NamedTuple):
-    """That a track continues a lost one, which is provisional until their clear appearances are compared.
+    """Provisional continuation of a lost track, until the clear appearances of both are compared.
 
     Attributes:
         lost: the lost track.
@@ -74,8 +74,8 @@ class TrackState:
         posture: (5,) log-odds of the postures, up to a constant; None if no sensor recognises them.
         common_m: (2,) deviation of the position across and along the line of sight that further images do not
             reduce.
-        continuation: of which lost track it is, as long as that is provisional.
-        not_ids: ids of the people that it is not.
+        continuation: of a lost track, as long as it is provisional.
+        not_ids: ids whose continuation was ended as a mistake.
     """
 
     key: int

@@ -7,6 +7,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from benchmarks.gallery import score
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
@@ -61,6 +62,14 @@ def ids_by_name(folder: Path) -> dict[str, int]:
         name = min((abs(x_px - middle_px), name) for x_px, name in at[one["frame"]])[1]
         found.setdefault(name, Counter())[one["id"]] += 1
     return {name: ids.most_common(1)[0][0] for name, ids in found.items()}
+
+
+def test_an_id_of_two_people_is_right_for_the_one_who_had_it_longer() -> None:
+    first = {"anna": Counter({1: 9}), "bernd": Counter({1: 2, 2: 8})}
+    second = {"anna": Counter({1: 6, 2: 4}), "bernd": Counter({2: 6, 7: 4})}
+    result = score([first, second])
+    assert (result["later visits"], result["right"], result["boxes"]) == (2, 2, 20)
+    assert [result[name] for name in ("right id", "wrong person", "new id")] == [60.0, 20.0, 20.0]
 
 
 def test_people_of_an_earlier_run_keep_their_ids(tmp_path: Path) -> None:

@@ -191,7 +191,7 @@ def test_who_comes_back_elsewhere_in_the_same_colours_keeps_the_number_and_nobod
 
 BLACK = (0, 0, 0)  # too dark to compare
 Part = tuple[int, float | None, tuple[int, int, int]]
-"""Number of frames, where a person stands to the right [m] (None for nobody there), and the clothes."""
+"""Number of frames, where a person stands to the right [m] (None if there is no person), and the clothes."""
 LEAVES, HIDDEN_CLOTHES = [(40, 0.0, RED), (8, None, RED)], (6, 0.3, BLACK)
 
 
@@ -199,10 +199,10 @@ def tracked_parts(parts: Sequence[Part]) -> list[tuple[Track, ...]]:
     boxes = [[] if at_m is None else [standing(at_m)] for count, at_m, _ in parts for _ in range(count)]
     clothes = [colour for count, _, colour in parts for _ in range(count)]
     tracker = PeopleTracker((fixed_sensor(FixedDetections(boxes)),))
-    shots = (next(frames([here], (colour,))) for here, colour in zip(boxes, clothes, strict=True))
+    images = (next(frames([here], (colour,))) for here, colour in zip(boxes, clothes, strict=True))
     return [
-        tracker.update(replace(shot, time_s=number / RATE_HZ, calibrations={THERMAL: CAMERA}))
-        for number, shot in enumerate(shots)
+        tracker.update(replace(image, time_s=number / RATE_HZ, calibrations={THERMAL: CAMERA}))
+        for number, image in enumerate(images)
     ]
 
 

@@ -70,14 +70,14 @@ def test_nothing_is_decided_as_long_as_one_of_them_is_in_sight_but_not_apart() -
 
 @pytest.mark.parametrize("has_exchanged", [False, True])
 def test_no_two_tracks_have_one_id_after_a_continuation_ends(has_exchanged: bool) -> None:
-    tracks, nobody = Tracks(), StateEstimates(np.zeros((1, STATE)), np.eye(STATE)[None])
+    tracks, state = Tracks(), StateEstimates(np.zeros((1, STATE)), np.eye(STATE)[None])
     lost, one = person(1, was=1.0, now=None, seen_s=NOW_S - 2.0), person(2, was=1.0, now=0.0)
-    one.id, one.continuation = 1, Continuation(lost, nobody, NOW_S - 1.0)
+    one.id, one.continuation = 1, Continuation(lost, state, NOW_S - 1.0)
     other, lost.watched_s = person(3, was=0.02, now=0.02), 5.0
     if has_exchanged:
         one.id, other.id = 3, 1
     tracks.items = [one, other]
-    tracks.states = tracks.last_seen = nobody.joined(nobody)
+    tracks.states = tracks.last_seen = state.joined(state)
     tracks.settle(NOW_S, CONFIG)
     ids = sorted(track.id for track in tracks.items)
     assert ids == ([1, 3] if has_exchanged else [0, 1, 3])
