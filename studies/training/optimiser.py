@@ -41,42 +41,43 @@ class Optimiser:
         """
         self.steps = 0
         self._weights: Weights = {name: jnp.asarray(array) for name, array in weights.items()}
-        self._average = self._weights if averages else None
+        self._average: Weights = dict(self._weights) if averages else {}
         matrices = {name: array.ndim > 1 for name, array in self._weights.items()}
         adam = optax.chain(optax.scale_by_adam(), optax.add_decayed_weights(decay, matrices))
         self._state, self._key = adam.init(self._weights), jax.random.key(seed)
 
         def step(
-            weights: Weights, state: optax.OptState, batch: Any, key: jax.Array, rate: float
-        ) -> tuple[Weights, optax.OptState, dict[str, jax.Array]]:
+            weights: Weights, average: Weights, state: optax.OptState, batch: Any, key: jax.Array, rates: Any
+        ) -> tuple[Weights, Weights, optax.OptState, dict[str, jax.Array]]:
+            rate, share = rates
             (_, results), slopes = jax.value_and_grad(loss, has_aux=True)(weights, batch, key)
             steps, state = adam.update(slopes, state, weights)
-            return {name: array - rate * steps[name] for name, array in weights.items()}, state, results
+            weights = {name: array - rate * steps[name] for name, array in weights.items()}
+            average = {name: kept + share * (weights[name] - kept) for name, kept in average.items()}
+            return weights, average, state, results
 
         self._step = jax.jit(step)
 
-    def step(self, batch: Any, rate: float) -> dict[str, float]:
-        """Take a step on a batch with a learning rate, and return the results of the loss."""
+    def step(self, batch: Any, rate: float) -> dict[str, jax.Array]:
+        """Take a step on a batch with a learning rate, and return the results of the loss, computed later."""
         self.steps += 1
         key = jax.random.fold_in(self._key, self.steps)
-        self._weights, self._state, results = self._step(self._weights, self._state, batch, key, rate)
-        if self._average is not None:
-            share = max(_LEAST_SHARE, _WARM_UP / (_WARM_UP + self.steps))
-            self._average = {
-                name: kept + share * (self._weights[name] - kept) for name, kept in self._average.items()
-            }
-        return {name: float(result) for name, result in results.items()}
+        rates = rate, max(_LEAST_SHARE, _WARM_UP / (_WARM_UP + self.steps))
+        results: dict[str, jax.Array]
+        self._weights, self._average, self._state, results = self._step(
+            self._weights, self._average, self._state, batch, key, rates
+        )
+        return results
 
     def run(self, batches: Iterable[tuple[Any, float]]) -> dict[str, float]:
         """Take a step on each batch with its learning rate, and return the mean results of the loss."""
         results = [self.step(batch, rate) for batch, rate in batches]
-        return {name: float(np.mean([one[name] for one in results])) for name in results[0]}
+        return {name: float(np.mean([float(one[name]) for one in results])) for name in results[0]}
 
     @property
     def weights(self) -> dict[str, Floats]:
         """The weights, or their running average."""
-        kept = self._weights if self._average is None else self._average
-        return {name: np.array(array) for name, array in kept.items()}
+        return {name: np.array(array) for name, array in (self._average or self._weights).items()}
 
 
 def shuffled(count: int, size: int, rng: np.random.Generator) -> Iterator[NDArray[np.int64]]:
