@@ -1,6 +1,7 @@
 """Training samples of the network that detects people: augmented images, and targets for each of its maps."""
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import cv2
@@ -23,6 +24,7 @@ from peopleboy.tracker.sensors.thermal.detector.people_network import (
 from peopleboy.tracker.track import TrackPosture
 
 Floats = NDArray[np.float32]
+Halves = NDArray[np.float16]
 Boxes = NDArray[np.float64]
 Grey = NDArray[np.uint8]
 Draw = np.random.Generator
@@ -44,17 +46,27 @@ POSTURE_OF: Final = np.array(
 )
 """(9,) number of the recognised posture for each posture of a simulated person."""
 
-_STILL: Final = 0.12  # share of images without change
-_SHAKEN: Final = 0.2  # share of images whose change contains that of a camera motion
-_MOST_SHIFT_PX: Final = 4.0
-_SHIFT_DOWN_PX: Final = 0.8  # standard deviation
+_STILL: Final = 0.3  # share of images without change
+_SHAKEN: Final = 0.25  # share of images whose change contains that of a camera motion
+_MOST_SHIFT_PX: Final = 7.0
+_SHIFT_DOWN_PX: Final = 1.2  # standard deviation
 _MOUNT_KNOWN: Final = 0.5
 _AS_RENDERED: Final = 0.2
 _CUT: Final = 0.15
 _SCALES: Final = (0.55, 1.35)
 _LEAST_SIDE_PX: Final = 32
 _AT_PEOPLE: Final = 0.7  # share of parts that contain a person's middle
+_LEAST_SPREAD: Final = 2.5  # [grey] standard deviation, in the box of a person who can be seen
 _WITHIN: Final = (0.2, 0.8)  # where on the canvas, in shares of its sides
+
+
+def batch_of(images: Sequence[ThermalImage], seed: int) -> tuple[Halves, dict[int, Floats]]:
+    """Return a sample of each of N images: inputs (N, 192, 256, 5), and targets (N, H', W', 10) by stride."""
+    rng = np.random.default_rng(seed)
+    cv2.setNumThreads(1)  # there are as many processes as cores
+    samples = [sample_of(image, rng) for image in images]
+    targets = {stride: np.stack([every[stride] for _, every in samples]) for stride in STRIDES}
+    return np.stack([planes for planes, _ in samples]).astype(np.float16), targets
 
 
 def sample_of(image: ThermalImage, rng: Draw) -> tuple[Floats, Targets]:
@@ -73,7 +85,8 @@ def sample_of(image: ThermalImage, rng: Draw) -> tuple[Floats, Targets]:
     shift = np.array([left - corner[0], top - corner[1]])
     box, whole = (_moved(one, scale, shift) for one in (image.box, image.whole))
     shown = np.array([left - 0.5, top - 0.5, left + columns - 0.5, top + rows - 0.5])
-    people = _People(box, whole, image.visible, POSTURE_OF[image.posture], shown)
+    visible = np.where(_stands_out(grey, _moved(image.whole, scale, -np.array(corner))), image.visible, 0.0)
+    people = _People(box, whole, visible, POSTURE_OF[image.posture], shown)
     return planes, {stride: people.target(stride) for stride in STRIDES}
 
 
@@ -94,6 +107,17 @@ def _part(image: ThermalImage, rng: Draw) -> tuple[Grey, Grey, tuple[int, int], 
         v = int(np.clip(top + height / 2.0 - rng.uniform(*_WITHIN) * CANVAS[0], 0, over[1]))
     rows_of_part, columns_of_part = slice(v, v + CANVAS[0]), slice(u, u + CANVAS[1])
     return grey[rows_of_part, columns_of_part], change[rows_of_part, columns_of_part], (u, v), scale
+
+
+def _stands_out(grey: Grey, whole: Boxes) -> NDArray[np.bool_]:
+    """Return whether there is anything to be seen of each person, or of the surroundings."""
+    low = np.clip(np.floor(whole[:, :2]), 0, None).astype(np.int64)
+    high = np.ceil(whole[:, :2] + whole[:, 2:]).astype(np.int64) + 1
+    spreads = [
+        float(here.std()) if (here := grey[top:bottom, left:right]).size else 0.0
+        for (left, top), (right, bottom) in zip(low.tolist(), np.maximum(high, low).tolist(), strict=True)
+    ]
+    return np.array(spreads) >= _LEAST_SPREAD
 
 
 def _mount_of_part(mount: Mount, top: int, scale: float) -> Mount:

@@ -1,11 +1,12 @@
 """Train the network that detects people of all postures: CenterNet's loss (Zhou et al. 2019) on four maps."""
 
 import math
-import queue
-import threading
+import os
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass
-from itertools import islice
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final
 
@@ -16,7 +17,13 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from peopleboy.studies.training.detector.evaluation import log_odds_line
-from peopleboy.studies.training.detector.people_samples import POSTURE_OF, Floats, Targets, sample_of
+from peopleboy.studies.training.detector.people_samples import (
+    POSTURE_OF,
+    Floats,
+    Halves,
+    Targets,
+    batch_of,
+)
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images, render_task
 from peopleboy.studies.training.detector.worlds import seeds_of
 from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights
@@ -38,11 +45,12 @@ from peopleboy.tracker.sensors.thermal.detector.people_network import (
 from peopleboy.tracker.track import TrackPosture
 
 Draw = np.random.Generator
-Batch = tuple[Floats, Targets]
+Batch = tuple[Halves, Targets]
 
 VALIDATION: Final = 30
 """Number of worlds for evaluating the network: those of the first seeds."""
-BATCH: Final = 16
+BATCH: Final = 32
+_AHEAD: Final = 3  # batches that each process prepares ahead
 _RATE: Final = 2e-3
 _WARM_UP: Final = 200  # batches
 _DECAY: Final = 0.02  # weight decay of kernels per batch, relative to the learning rate
@@ -108,38 +116,36 @@ def fit_weights(
     """Train the weights on images, from initial ones or from those of an earlier training."""
     rng = np.random.default_rng(seed)
     optimiser = Optimiser(loss, before or first_weights(rng), decay=_DECAY, averages=True)
-    results: list[dict[str, float]] = []
-    for number, batch in enumerate(islice(batches(images, rng), steps)):
+    results: list[dict[str, jax.Array]] = []
+    for number, batch in enumerate(batches(images, rng, steps)):
         warm = min((number + 1) / _WARM_UP, 1.0)
         rate = _RATE * warm * 0.5 * (1.0 + math.cos(math.pi * number / steps))
         results.append(optimiser.step(batch, rate))
         if (number + 1) % _REPORTED == 0 or number + 1 == steps:
-            means = {name: float(np.mean([one[name] for one in results])) for name in results[0]}
+            means = {name: float(np.mean([float(one[name]) for one in results])) for name in results[0]}
             report(f"step {number + 1}: " + ", ".join(f"{name} {mean:.3f}" for name, mean in means.items()))
             results = []
     return optimiser.weights | {"line": np.array([1.0, 0.0], np.float32)}
 
 
-def batches(images: Sequence[ThermalImage], rng: Draw) -> Iterator[Batch]:
-    """Yield batches without end, prepared by a thread; images with people are drawn more often."""
+def batches(images: Sequence[ThermalImage], rng: Draw, count: int) -> Iterator[Batch]:
+    """Yield batches, prepared by as many processes as there are cores; the batches don't depend on how many.
+
+    Images with people are drawn more often.
+    """
     weight = np.array([1.0 + min(len(image.box), _MOST_DRAWN) for image in images])
-    ready: queue.Queue[Batch] = queue.Queue(2)
-    is_over = threading.Event()
 
-    def prepare() -> None:
-        while not is_over.is_set():
+    cores = os.cpu_count() or 1
+    ready: deque[Future[Batch]] = deque()
+    with ProcessPoolExecutor(cores, get_context("spawn")) as processes:
+        for _ in range(count):
             rows = rng.choice(len(images), BATCH, p=weight / weight.sum())
-            samples = [sample_of(images[row], rng) for row in rows]
-            targets = {stride: np.stack([every[stride] for _, every in samples]) for stride in STRIDES}
-            ready.put((np.stack([planes for planes, _ in samples]), targets))
-
-    threading.Thread(target=prepare, daemon=True).start()
-    try:
-        while True:
-            yield ready.get()
-    finally:
-        is_over.set()
-        ready.get()  # the thread may wait for room
+            own = [images[row] for row in rows]
+            ready.append(processes.submit(batch_of, own, int(rng.integers(2**63))))
+            if len(ready) > _AHEAD * cores:
+                yield ready.popleft().result()
+        while ready:
+            yield ready.popleft().result()
 
 
 def first_weights(rng: Draw) -> Weights:
@@ -191,7 +197,7 @@ def loss(weights: Weights, batch: Any, key: jax.Array) -> tuple[jax.Array, dict[
     """Return the sum of the losses of scores (focal), boxes (smooth L1) and postures (cross entropy)."""
     planes, targets = batch
     sums = jnp.zeros(5)
-    for stride, outputs in forward(weights, planes).items():
+    for stride, outputs in forward(weights, planes.astype(jnp.float32)).items():
         sums += _sums(outputs, targets[stride])
     people, regressed = jnp.maximum(sums[0], 1.0), jnp.maximum(sums[1], 1.0)
     scores, boxes, postures = sums[2] / people, sums[3] / regressed, sums[4] / regressed
