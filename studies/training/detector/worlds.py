@@ -183,12 +183,12 @@ def _warm_world(seed: int) -> World:
 
 
 KINDS: Final = (
-    WorldKind("random worlds", 1000, 0.34, ordinary_world),
+    WorldKind("random worlds", 1000, 0.32, ordinary_world),
     WorldKind("crowds", 2000, 0.12, crowded_world),
-    WorldKind("worlds in the robot's own span", 3000, 0.26, _library_world),
-    WorldKind("plain worlds as warm as people", 4000, 0.06, _warm_world),
+    WorldKind("worlds in the robot's own span", 3000, 0.22, _library_world),
+    WorldKind("plain worlds as warm as people", 4000, 0.04, _warm_world),
     WorldKind("crowds in the robot's own span", 5000, 0.08, _library_crowd),
-    WorldKind("worlds seen from above", 6000, 0.14, _world_from_above),
+    WorldKind("worlds seen from above", 6000, 0.22, _world_from_above),
 )
 
 LATER: Final = 10_000

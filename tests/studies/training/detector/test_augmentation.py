@@ -11,13 +11,17 @@ from hypothesis import strategies as st
 
 from peopleboy.studies.training.detector import augmentation
 from peopleboy.studies.training.detector.augmentation import (
+    add_light,
     add_texture,
     augment,
+    blacken_borders,
     change_span,
     crop,
     dim_people,
     equalise,
+    inscribe,
     mirror,
+    put_in_front,
     sharpen,
     simulate_electronics,
     soften,
@@ -312,3 +316,35 @@ def test_people_stay_where_they_are() -> None:
     came = [simulate_electronics(shot, rng) for _ in range(40)]
     assert all(one.box is shot.box and one.grey.shape == shot.grey.shape for one in came)
     assert 4 < sum(np.array_equal(one.grey, shot.grey) for one in came) < 30
+
+
+def test_things_in_front_hide_people_and_what_changes_behind_them(shots: list[ThermalImage]) -> None:
+    shot, rng = shots[0], np.random.default_rng(0)
+    mask = np.zeros(shot.grey.shape, np.float32)
+    left, top, width, height = shot.whole[0].astype(int).tolist()
+    mask[top : top + height // 2, max(left - 9, 0) : left + width + 9] = 1.0
+    hidden = put_in_front(shot, mask, rng)
+    assert hidden.visible[0] / shot.visible[0] == pytest.approx(0.5, abs=0.05)
+    assert not hidden.change[top + 5 : top + height // 2 - 5, left : left + width].any()
+    away = np.s_[min(top + height // 2 + 6, len(shot.grey)) :]
+    np.testing.assert_array_equal(hidden.grey[away], shot.grey[away])
+    unhidden = put_in_front(shot, np.zeros_like(mask), rng)
+    np.testing.assert_array_equal(unhidden.grey, shot.grey)
+    np.testing.assert_array_equal(unhidden.visible, shot.visible)
+
+
+def test_sun_and_shade_are_patches_and_do_not_move_boxes(shots: list[ThermalImage]) -> None:
+    lit = [add_light(shot, np.random.default_rng(seed)) for seed, shot in enumerate(shots[:8])]
+    assert all(np.any(one.grey != shot.grey) for one, shot in zip(lit, shots, strict=False))
+    assert all(one.box is shot.box for one, shot in zip(lit, shots, strict=False))
+
+
+def test_figures_and_borders_are_black_or_white_and_the_rest_is_unchanged(shots: list[ThermalImage]) -> None:
+    for seed, shot in enumerate(shots[:12]):
+        written = inscribe(shot, np.random.default_rng(seed)).grey
+        assert set(np.unique(written[written != shot.grey])) <= {0, 255}
+        fitted = blacken_borders(shot, np.random.default_rng(seed))
+        cut = fitted.grey != shot.grey
+        assert not fitted.grey[cut].any()
+        inner = np.s_[40:-40, 50:-50]
+        np.testing.assert_array_equal(fitted.grey[inner], shot.grey[inner])
