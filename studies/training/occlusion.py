@@ -15,7 +15,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.studies.training.samples import (
     Arrays,
     SampleTask,
@@ -31,6 +33,7 @@ from peopleboy.studies.training.weak_classifiers import (
     weighted_sums,
 )
 from peopleboy.tracker.boxes import add_edge_noise, iou
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.reproductions.contour.contour_config import TrackerConfig
 from peopleboy.tracker.reproductions.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.reproductions.contour.occlusion.depth_order import (
@@ -189,11 +192,17 @@ def is_in_front(one: PersonTruth, other: PersonTruth) -> bool | None:
 
 
 def collect_pairs(
-    scenario: str, seed: int, config: TrackerConfig, label_noise_px: float = 0.0
+    scenario: str, seed: int, config: TrackerConfig, label_noise_px: float = 0.0, tilt_rad: float = 0.0
 ) -> PairSamples:
     """Run a tracker through a scenario, and collect its features of overlapping people.
 
-    Tracks match people by ground-truth boxes, whose edges get noise of this deviation [px].
+    Args:
+        scenario: name of the scenario.
+        seed: seed of the scenario.
+        config: settings of the tracker.
+        label_noise_px: [px] standard deviation of noise at the edges of ground-truth boxes, by which tracks
+            match people.
+        tilt_rad: [rad] by which the thermal camera is tilted up.
 
     Raises:
         BadInput: an unknown scenario.
@@ -207,7 +216,7 @@ def collect_pairs(
     people = ContourTracker(config, stream(seed, "tracker"), order)
     labels = stream(seed, f"labels {scenario}")
     rows: list[PairRow] = []
-    with SimulatedWorld(loaded.world(seed)) as world:
+    with SimulatedWorld(_tilted(loaded.world(seed), tilt_rad)) as world:
         frames = round(loaded.duration_s * world.config.control_hz)
         for tick in closed_loop(world, people, loaded.make_behaviour(), frames):
             boxed = [person for person in tick.truth.people if person.box is not None]
@@ -222,6 +231,15 @@ def collect_pairs(
                     rows.append((tick.frame, one.name, other.name, features, is_front))
             order.asked.clear()
     return PairSamples.from_rows(loaded.name, seed, rows)
+
+
+def _tilted(world: WorldConfig, tilt_rad: float) -> WorldConfig:
+    """Return a world in which the thermal camera is tilted up."""
+    thermal = world.robot.cameras[THERMAL]
+    assert isinstance(thermal.camera, Pinhole)
+    tilted = replace(thermal, camera=replace(thermal.camera, pitch_rad=thermal.camera.pitch_rad - tilt_rad))
+    cameras = {**world.robot.cameras, THERMAL: tilted}
+    return replace(world, robot=replace(world.robot, cameras=cameras))
 
 
 def _true_person(

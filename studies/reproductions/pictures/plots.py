@@ -24,8 +24,10 @@ COLOURS = {
     "default, strict": "#8fbbd9",
     "literal, held out": "#d95f02",
     "literal, unseen scenarios": "#f4a76a",
+    "literal, feet cut off": "#fad3bc",
     "default, held out": "#1f78b4",
     "default, unseen scenarios": "#8fbbd9",
+    "default, feet cut off": "#c7dded",
 }
 Points = dict[str, tuple[float, float | None]]
 Series = dict[str, Points]

@@ -1,10 +1,12 @@
 import json
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.reproductions.experiments.learning import (
     learn_pairs,
@@ -17,11 +19,14 @@ from peopleboy.studies.training.occlusion import (
     Episodes,
     OcclusionTraining,
     PairSamples,
+    collect_pairs,
     is_in_front,
     share_right,
 )
 from peopleboy.studies.training.specification import train
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.reproductions.contour.occlusion.learned_table import LearnedTable
+from peopleboy.tracker.reproductions.contour.variants import CONTOUR
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.synthetic_ticks import person
@@ -82,8 +87,8 @@ def test_however_uneven_scenarios_are_one_is_left_to_test_with():
 def test_a_feature_that_tells_nothing_is_right_in_half_of_all_answers():
     given = examples(60, 0)
     given = replace(given, features=given.features * [1, 1, 1, 1, 0, 1])
-    found = learn_pairs(("colour_o",), 1, 4, 0, given)
-    assert found == {"held out": 50.0, "unseen scenarios": 50.0, "best": []}
+    found = learn_pairs(("colour_o",), 1, 4, 0, given, given)
+    assert found == {"held out": 50.0, "unseen scenarios": 50.0, "feet cut off": 50.0, "best": []}
 
 
 def test_as_many_examples_are_positive_as_negative():
@@ -133,8 +138,33 @@ def test_examples_survive_their_file_and_plain_data(count, tmp_path):
 
 def test_too_few_pairs_of_a_tracker_teach_nothing():
     few, enough = (
-        learn_pairs(("top", "bottom"), 2, 5, 0, examples(count, 1)) for count in (LEAST - 1, LEAST)
+        learn_pairs(("top", "bottom"), 2, 5, 0, examples(count, 1), examples(40, 1))
+        for count in (LEAST - 1, LEAST)
     )
     assert np.isnan([few["held out"], few["unseen scenarios"]]).all()
+    assert few["feet cut off"] > 60
     assert few["best"] == []
     assert enough["held out"] > 60
+
+
+def test_a_camera_that_is_tilted_up_sees_no_feet_within_11_m():
+    world = occlusion._tilted(load_scenario("crossing_pair").world(0), math.radians(16.0))
+    camera = world.robot.cameras[THERMAL].camera
+    sees_floor_from = camera.position_m[2] / math.tan(camera.vertical_fov_rad / 2.0 + camera.pitch_rad)
+    assert 11.0 < sees_floor_from < 12.0
+    before = load_scenario("crossing_pair").world(0).robot.cameras
+    assert {name for name, one in world.robot.cameras.items() if one != before[name]} == {THERMAL}
+
+
+@pytest.mark.thorough
+def test_noise_of_labels_is_drawn_from_the_seed_and_leaves_features_unchanged():
+    exact, noisy, again = (
+        collect_pairs("crossing_pair", 0, CONTOUR, label_noise_px=noise) for noise in (0.0, 12.0, 12.0)
+    )
+    np.testing.assert_array_equal(noisy.frame, again.frame)
+    measured = dict(zip(exact.frame.tolist(), exact.features, strict=True))
+    both = [row for row, frame in enumerate(noisy.frame.tolist()) if frame in measured]
+    assert both
+    for row in both:
+        expected = measured[int(noisy.frame[row])]
+        np.testing.assert_allclose(np.abs(noisy.features[row]), np.abs(expected))
