@@ -9,8 +9,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.geometry.small_matrices import inverse
-from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.track import FloorPlace
+from peopleboy.tracker.tracking.camera_motion import FrameMotion
 from peopleboy.tracker.tracking.config import KalmanConfig
 from peopleboy.tracker.tracking.viewpoint import Position, Viewpoint
 
@@ -87,19 +87,18 @@ def initiate(boxes: Floats, variance: Floats, view: Viewpoint, config: KalmanCon
     return StateEstimates(np.concatenate([feet, np.zeros((len(feet), 4))], axis=1), covariance)
 
 
-def predict(states: StateEstimates, dt_s: float, moved: Odometry, config: KalmanConfig) -> StateEstimates:
+def predict(states: StateEstimates, dt_s: float, moved: FrameMotion, config: KalmanConfig) -> StateEstimates:
     """Predict the states for the next frame, with white acceleration, in the frame of the moved robot."""
     mean, covariance = np.empty_like(states.mean), np.empty_like(states.covariance)
     pushed = np.square(config.acceleration_m_s2)
-    _walk_on(states.mean, states.covariance, dt_s, _turn(moved), pushed, config.posture**2, mean, covariance)
-    mean[:, :3] = move_points(mean[:, :3], moved)
+    _walk_on(states.mean, states.covariance, dt_s, moved.turn, pushed, config.posture**2, mean, covariance)
+    mean[:, :3] = (mean[:, :3] - moved.step_m) @ moved.turn.T
     mean[:, 2] = np.maximum(mean[:, 2], config.nearest_m)
+    if moved.unsure_rad > 0.0:
+        spread = np.square(moved.unsure_rad * mean[:, 2])
+        covariance[:, 0, 0] += spread
+        covariance[:, 1, 1] += spread
     return StateEstimates(mean, covariance)
-
-
-def move_points(points_m: Floats, moved: Odometry) -> Floats:
-    """Transform points (K, 3) of the level frame by the robot's motion."""
-    return np.asarray((points_m - (-moved.aside_m, 0.0, moved.advance_m)) @ _turn(moved).T)
 
 
 def mahalanobis(states: StateEstimates, expected: Linearised, variance: Floats, seen: Floats) -> Floats:
@@ -184,12 +183,6 @@ def floor_positions(states: StateEstimates, common_m: Floats, origin_m: Position
 def _to_robot(covariance: Floats) -> tuple[float, float, float]:
     """Return xx, xy, yy in the robot frame of a covariance (2, 2) to the right and ahead."""
     return float(covariance[1, 1]), -float(covariance[0, 1]), float(covariance[0, 0])
-
-
-def _turn(moved: Odometry) -> Floats:
-    """Return the rotation (3, 3) of the level frame into that of a robot that turned."""
-    cosine, sine = math.cos(moved.turn_rad), math.sin(moved.turn_rad)
-    return np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
 
 
 @njit(cache=True, nogil=True)

@@ -1,14 +1,14 @@
 """The people tracker: detections of one or several sensors become lasting tracks."""
 
 from collections.abc import Mapping, Sequence
-from typing import Final
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
-from peopleboy.tracker.frame import Frame, Odometry, check_frame, lacking, time_step
+from peopleboy.tracker.frame import Frame, check_frame, lacking, time_step
 from peopleboy.tracker.track import Box, Track
+from peopleboy.tracker.tracking.camera_motion import CameraMotion
 from peopleboy.tracker.tracking.config import PeopleTrackerConfig
 from peopleboy.tracker.tracking.people_gallery import PeopleGallery
 from peopleboy.tracker.tracking.sensor import (
@@ -22,8 +22,6 @@ from peopleboy.tracker.tracking.sensor_update import SensorUpdate
 from peopleboy.tracker.tracking.track_output import output_tracks
 from peopleboy.tracker.tracking.tracks import Tracks
 from peopleboy.tracker.tracking.viewpoint import Position, Viewpoint
-
-_STANDING: Final = Odometry()
 
 
 class PeopleTracker:
@@ -54,6 +52,7 @@ class PeopleTracker:
         self._last_s: float | None = None
         self._sensed_s: dict[str, float] = {}
         self._settings: Settings | None = None
+        self._motion = CameraMotion()
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -96,7 +95,7 @@ class PeopleTracker:
         dt_s = time_step(frame.time_s, self._last_s)
         self._last_s = frame.time_s
         self._tracks.origin_m = self._origin(frame)
-        before = self._tracks.predict(dt_s, frame.odometry or _STANDING, self._config.motion)
+        before = self._tracks.predict(dt_s, self._motion.update(frame), self._config.motion)
         update = SensorUpdate(self._tracks, frame, dt_s, self._config)
         for sensor in self._sensors:
             detections = sensor.detect(frame, self._tracks.predictions())

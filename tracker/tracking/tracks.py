@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.tracking.association import CLEAR, shared_area
+from peopleboy.tracker.tracking.camera_motion import FrameMotion
 from peopleboy.tracker.tracking.config import KalmanConfig, ReidentificationConfig
 from peopleboy.tracker.tracking.motion_filter import NO_STATES, Floats, StateEstimates, predict
 from peopleboy.tracker.tracking.people_gallery import KnownPerson, PeopleGallery
@@ -44,7 +44,7 @@ class Tracks:
         self.gallery: PeopleGallery | None = None
         self._keys, self._ids = count(), count(1)
 
-    def predict(self, dt_s: float, moved: Odometry, config: KalmanConfig) -> StateEstimates:
+    def predict(self, dt_s: float, moved: FrameMotion, config: KalmanConfig) -> StateEstimates:
         """Predict the tracks, and return the states before that in the present level frame."""
         before = predict(self.states, 0.0, moved, config)
         self.states = predict(self.states, dt_s, moved, config)

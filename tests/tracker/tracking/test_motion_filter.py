@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.tracking.camera_motion import FrameMotion
 from peopleboy.tracker.tracking.config import KalmanConfig
 from peopleboy.tracker.tracking.measurement import BoxMeasurement
 from peopleboy.tracker.tracking.motion_filter import (
@@ -47,9 +48,9 @@ def test_who_walks_evenly_is_expected_where_he_is() -> None:
     feet, walk = np.array([-1.0, 1.2, 6.0]), np.array([0.8, 0.0, -0.3])
     paths = initiate(box_at(feet), VIEW, CONFIG)
     for number in range(1, 60):
-        paths = predict(paths, 1 / 15, Odometry(), CONFIG)
+        paths = predict(paths, 1 / 15, FrameMotion.of(Odometry()), CONFIG)
         paths = update_states(paths, box_at(feet + walk * number / 15), VIEW, CONFIG)
-    later = predict(paths, 1.0, Odometry(), CONFIG)
+    later = predict(paths, 1.0, FrameMotion.of(Odometry()), CONFIG)
     assert later.mean[0, :3] == pytest.approx(feet + walk * (59 / 15 + 1.0), abs=0.05)
     assert paths.mean[0, 3:6] == pytest.approx(walk, abs=0.02)
 
@@ -58,7 +59,9 @@ def test_who_walks_evenly_is_expected_where_he_is() -> None:
 def test_the_robots_own_motion_moves_nobody_in_the_world(turn: float, ahead: float, aside: float) -> None:
     feet = np.array([0.7, 1.2, 5.0])
     paths = initiate(box_at(feet), VIEW, CONFIG)
-    moved = predict(paths, 1e-6, Odometry(advance_m=ahead, aside_m=aside, turn_rad=turn), CONFIG)
+    moved = predict(
+        paths, 1e-6, FrameMotion.of(Odometry(advance_m=ahead, aside_m=aside, turn_rad=turn)), CONFIG
+    )
     # The same in the robot's frame: x ahead, y to the left.
     x, y = 5.0 - ahead, -0.7 - aside
     forward = np.cos(turn) * x + np.sin(turn) * y
@@ -86,7 +89,7 @@ def test_covariances_stay_symmetric_and_positive() -> None:
     paths = initiate(box_at(feet), VIEW, CONFIG)
     rng = np.random.default_rng(0)
     for _ in range(600):
-        paths = predict(paths, 1 / 15, Odometry(turn_rad=rng.normal(0.0, 0.02)), CONFIG)
+        paths = predict(paths, 1 / 15, FrameMotion.of(Odometry(turn_rad=rng.normal(0.0, 0.02))), CONFIG)
         paths = update_states(paths, box_at(feet) + rng.normal(0.0, 1.0, 4), VIEW, CONFIG)
     covariance = paths.covariance[0]
     assert covariance == pytest.approx(covariance.T, abs=1e-9)
@@ -111,7 +114,7 @@ def test_who_is_short_is_told_from_who_is_far_where_the_floor_is_known() -> None
     feet, build = np.array([0.5, 1.2, 4.0]), -0.1
     paths = initiate(box_at(feet, build), VIEW, CONFIG)
     for _ in range(60):
-        paths = predict(paths, 1 / 15, Odometry(), CONFIG)
+        paths = predict(paths, 1 / 15, FrameMotion.of(Odometry()), CONFIG)
         paths = update_states(paths, box_at(feet, build), VIEW, CONFIG)
     assert paths.mean[0, :3] == pytest.approx(feet, abs=0.1)
     assert paths.mean[0, 6] == pytest.approx(build, abs=0.02)
@@ -122,7 +125,7 @@ def several(seed: int) -> StateEstimates:
     rng = np.random.default_rng(seed)
     feet = rng.uniform([-2.0, 1.1, 2.0], [2.0, 1.3, 9.0], (4, 3))
     boxes = np.concatenate([box_at(one) for one in feet])
-    return predict(initiate(boxes, VIEW, CONFIG), 0.4, Odometry(turn_rad=0.05), CONFIG)
+    return predict(initiate(boxes, VIEW, CONFIG), 0.4, FrameMotion.of(Odometry(turn_rad=0.05)), CONFIG)
 
 
 def seen_from(paths: StateEstimates) -> tuple[np.ndarray, np.ndarray]:
@@ -143,7 +146,7 @@ def test_paths_are_carried_on_as_a_kalman_filter_does(
     seed: int, dt_s: float, turn: float, ahead: float
 ) -> None:
     paths = several(seed)
-    ours = predict(paths, dt_s, Odometry(advance_m=ahead, turn_rad=turn), CONFIG)
+    ours = predict(paths, dt_s, FrameMotion.of(Odometry(advance_m=ahead, turn_rad=turn)), CONFIG)
     c, s = np.cos(turn), np.sin(turn)
     rotation = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
     step, whole, spread = np.eye(7), np.eye(7), np.zeros((7, 7))
@@ -185,7 +188,7 @@ def test_who_is_found_after_long_or_right_before_the_camera_is_believed_no_less(
     view, rng = replace(VIEW, floor_m=floor_m), np.random.default_rng(seed)
     paths = initiate(box_at(np.array([0.2, 1.2, away_m])), view, CONFIG)
     for _ in range(12):
-        paths = predict(paths, lost_s, Odometry(turn_rad=float(rng.normal(0.0, 0.3))), CONFIG)
+        paths = predict(paths, lost_s, FrameMotion.of(Odometry(turn_rad=float(rng.normal(0.0, 0.3)))), CONFIG)
         seen = predicted_boxes(paths, view, RATIO) + rng.normal(0.0, 20.0, 4)
         paths = update_states(paths, np.maximum(seen, [-999.0, -999.0, 1.0, 4.0]), view, CONFIG)
         extent = np.linalg.eigvalsh(paths.covariance[0])

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from peopleboy.geometry.small_matrices import inverse
 from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.tracking.camera_motion import seen_homography
 
 Grey = NDArray[np.uint8]
 Matrix = NDArray[np.float64]
 
 _STILL_PX: Final = 1.0 / 64.0
 """Shift below which the image is not warped: pixels are interpolated to 1/32."""
-_SURE: Final = 0.12  # response of the phase correlation below which a shift is unreliable
 
 
 def rotation_homography(mount: Mount, shape: tuple[int, int], turn_rad: float) -> Matrix:
@@ -36,23 +36,6 @@ def rotation_homography(mount: Mount, shape: tuple[int, int], turn_rad: float) -
     axis = np.array([0.0, -math.cos(pitch), -math.sin(pitch)])
     rotation, _ = cv2.Rodrigues(-turn_rad * axis)
     return np.asarray(inward @ rotation @ inverse(inward), np.float64)
-
-
-def shift_homography(before: Grey, now: Grey) -> Matrix:
-    """Estimate the shift (3, 3) of pixels (u, v, 1) between two images.
-
-    By phase correlation at half size; no shift if that is unreliable.
-    """
-    half = (max(now.shape[1] // 2, 1), max(now.shape[0] // 2, 1))
-    smaller = [cv2.resize(image, half, interpolation=cv2.INTER_AREA) for image in (before, now)]
-    edges = [cv2.Laplacian(cv2.GaussianBlur(image, (0, 0), 1.0), cv2.CV_32F) for image in smaller]
-    (right, down), response = cv2.phaseCorrelate(
-        edges[0], edges[1], cv2.createHanningWindow(half, cv2.CV_32F)
-    )
-    matrix = np.eye(3)
-    if response >= _SURE:
-        matrix[:2, 2] = right * now.shape[1] / half[0], down * now.shape[0] / half[1]
-    return matrix
 
 
 def image_difference(before: Grey, now: Grey, moved: Matrix) -> Grey:
@@ -119,7 +102,7 @@ class PastImages:
         """Return the difference (H, W) of the last image from that of about 0.2 s before, or 0.
 
         Args:
-            mount: of the camera, used with odometry to warp images; None estimates the shift from the images.
+            mount: of the camera, used with odometry to warp images; None estimates motion from the images.
         """
         *earlier, now = self._past
         if not earlier:
@@ -129,5 +112,5 @@ class PastImages:
         if mount is not None and all(one.is_known for one in since):
             moved = rotation_homography(mount, now.grey.shape, now.heading_rad - before.heading_rad)
         else:
-            moved = shift_homography(before.grey, now.grey)
+            moved = seen_homography(before.grey, now.grey)
         return image_difference(before.grey, now.grey, moved)

@@ -17,7 +17,6 @@ from peopleboy.tracker.sensors.thermal.detector.image_change import (
     PastImages,
     image_difference,
     rotation_homography,
-    shift_homography,
 )
 
 
@@ -97,18 +96,6 @@ def test_a_turn_moves_pixels_as_the_calibration_says(pitch_rad: float, turn_rad:
 def test_a_turn_to_the_left_moves_pixels_to_the_right() -> None:
     moved = rotation_homography(mount_of(camera(0.0), ROWS), (ROWS, COLUMNS), 0.1)
     assert (moved @ [80.0, 60.0, 1.0])[0] > 80.0
-
-
-@pytest.mark.parametrize(("right", "down"), [(0, 0), (6, 0), (-4, 2)])
-def test_a_shift_is_found_by_what_is_alike(right: int, down: int) -> None:
-    now = np.roll(speckled(), (down, right), (0, 1))
-    moved = shift_homography(speckled(), now)
-    np.testing.assert_allclose(moved, [[1.0, 0.0, right], [0.0, 1.0, down], [0.0, 0.0, 1.0]], atol=0.3)
-
-
-def test_nothing_is_said_of_the_shift_of_images_that_have_nothing_in_common() -> None:
-    other = np.random.default_rng(9).integers(0, 256, (ROWS, COLUMNS)).astype(np.uint8)
-    np.testing.assert_array_equal(shift_homography(speckled(), other), np.eye(3))
 
 
 def test_what_the_motion_of_the_camera_explains_is_no_change() -> None:
