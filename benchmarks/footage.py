@@ -57,6 +57,8 @@ SEED: Final = 1
 _FOLDER: Final = click.Path(exists=True, file_okay=False, path_type=Path)
 
 OUT: Final = Path("runs/clips.json")
+_NONE: Final = "none"
+"""Name of no peer."""
 
 COLUMNS: Final[Mapping[str, str]] = {
     "HOTA": "{:.1f}",
@@ -184,7 +186,7 @@ def _split(clips: Mapping[str, RealClip]) -> str:
     "--peer",
     "peers",
     multiple=True,
-    type=click.Choice(tuple(PEERS)),
+    type=click.Choice((*PEERS, _NONE)),
     default=tuple(PEERS),
     help="Peer to evaluate on --clips; may be repeated.  [default: all]",
 )
@@ -195,14 +197,14 @@ def _split(clips: Mapping[str, RealClip]) -> str:
 )
 @click.option("--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="Seeds per tracker.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Number of processes.")
-def main(clips: Path | None, **how: Any) -> None:
+def main(clips: Path | None, peers: Sequence[str], **how: Any) -> None:
     """Print metrics of the default tracker in library scenes, or of trackers and peers on clips.
 
     Metrics are in percent. AP and AP50 are average precisions of the detections, by COCO's rules; people are
     small below 48 px, and large from 96 px on. Those of --clips are also written to runs/clips.json.
     """
     if clips is not None:
-        bench_clips(clips, **how)
+        bench_clips(clips, peers=[peer for peer in peers if peer != _NONE], **how)
         return
     with tempfile.TemporaryDirectory() as folder:
         _show_rooms(Path(folder))
