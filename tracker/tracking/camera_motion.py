@@ -86,13 +86,16 @@ _WINDOW_PX: Final = (15, 15)
 _HALVINGS: Final = 3  # follows up to about 50 px
 _OFF_PX: Final = 1.0
 _LEAST_AGREEING: Final = 0.5  # share of the corners
+_STAYS_PX: Final = 0.25
+_MOST_STAYING: Final = 0.2  # share of the corners, as of figures that are burnt in
 
 
 def seen_homography(before: Grey, now: Grey) -> Floats:
     """Estimate the shift, rotation and scale (3, 3) of pixels (u, v, 1) between two images of a scene.
 
-    Corners are followed from one to the other (Lucas and Kanade 1981). Most of them must agree, so that
-    people who move do not count; otherwise the camera counts as standing.
+    Corners are followed from one to the other (Lucas and Kanade 1981). Most of them must agree, and few may
+    stay where they were: people who walk in front of a standing camera may have most of the corners, but not
+    all. Otherwise the camera counts as standing.
     """
     before, now = np.ascontiguousarray(before), np.ascontiguousarray(now)
     corners: Any = cv2.goodFeaturesToTrack(before, _MOST_CORNERS, _WEAKEST, _APART_PX)
@@ -102,7 +105,8 @@ def seen_homography(before: Grey, now: Grey) -> Floats:
         before, now, corners, np.empty_like(corners), winSize=_WINDOW_PX, maxLevel=_HALVINGS
     )
     followed = is_found.ravel() > 0
-    if followed.sum() < _FEWEST_CORNERS:
+    way = (there - corners)[followed].reshape(-1, 2)
+    if len(way) < _FEWEST_CORNERS or (np.hypot(*way.T) < _STAYS_PX).mean() > _MOST_STAYING:
         return np.eye(3)
     moved, agrees = cv2.estimateAffinePartial2D(
         corners[followed], there[followed], method=cv2.RANSAC, ransacReprojThreshold=_OFF_PX

@@ -121,3 +121,10 @@ def test_images_with_nothing_in_common_show_no_motion(other: str) -> None:
     after = unlike if other == "unlike" else flat
     np.testing.assert_array_equal(seen_homography(speckled(), after), np.eye(3))
     np.testing.assert_array_equal(seen_homography(flat, after), np.eye(3))
+
+
+def test_people_who_walk_past_do_not_move_a_standing_camera() -> None:
+    before = speckled()
+    now = before.copy()
+    now[20:, 8:110] = before[20:, :102]  # most of the image walks to the right
+    np.testing.assert_array_equal(seen_homography(before, now), np.eye(3))
