@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from typing import Final
+from multiprocessing.shared_memory import SharedMemory
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
@@ -28,6 +29,7 @@ Halves = NDArray[np.float16]
 Boxes = NDArray[np.float64]
 Grey = NDArray[np.uint8]
 Draw = np.random.Generator
+Batch = tuple[Halves, dict[int, Halves]]
 Targets = dict[int, Floats]
 """Targets (H', W', 10) by stride: the score, its weight, the weight of the box, its six numbers, posture."""
 
@@ -60,13 +62,59 @@ _LEAST_SPREAD: Final = 2.5  # [grey] standard deviation, in the box of a person 
 _WITHIN: Final = (0.2, 0.8)  # where on the canvas, in shares of its sides
 
 
-def batch_of(images: Sequence[ThermalImage], seed: int) -> tuple[Halves, dict[int, Floats]]:
+class SharedBatch(NamedTuple):
+    """A batch of N samples in shared memory: copying it through a pipe takes longer than to train on it.
+
+    Attributes:
+        name: of the shared memory.
+        samples: N.
+    """
+
+    name: str
+    samples: int
+
+    def take(self) -> Batch:
+        """Copy the batch, and free the shared memory."""
+        memory = SharedMemory(self.name)
+        planes, targets = _arrays_in(memory, self.samples)
+        copied = planes.copy(), {stride: target.copy() for stride, target in targets.items()}
+        del planes, targets
+        memory.close()
+        memory.unlink()
+        return copied
+
+
+def batch_of(images: Sequence[ThermalImage], seed: int) -> SharedBatch:
     """Return a sample of each of N images: inputs (N, 192, 256, 5), and targets (N, H', W', 10) by stride."""
     rng = np.random.default_rng(seed)
     cv2.setNumThreads(1)  # there are as many processes as cores
-    samples = [sample_of(image, rng) for image in images]
-    targets = {stride: np.stack([every[stride] for _, every in samples]) for stride in STRIDES}
-    return np.stack([planes for planes, _ in samples]).astype(np.float16), targets
+    memory = SharedMemory(
+        create=True, size=2 * len(images) * (math.prod(_PLANES) + sum(map(math.prod, _TARGETS.values())))
+    )
+    planes, targets = _arrays_in(memory, len(images))
+    for number, image in enumerate(images):
+        planes[number], own = sample_of(image, rng)
+        for stride in STRIDES:
+            targets[stride][number] = own[stride]
+    del planes, targets
+    memory.close()
+    return SharedBatch(memory.name, len(images))
+
+
+_PLANES: Final = (*CANVAS, PLANES)
+_TARGETS: Final = {stride: (CANVAS[0] // stride, CANVAS[1] // stride, 4 + BOX) for stride in STRIDES}
+
+_SAMPLE_BYTES: Final = 2 * sum(map(math.prod, (_PLANES, *_TARGETS.values())))
+
+
+def _arrays_in(memory: SharedMemory, count: int) -> Batch:
+    """Return the inputs, and the targets by stride, that lie one after the other in shared memory."""
+    planes = np.ndarray((count, *_PLANES), np.float16, memory.buf)
+    targets, offset = {}, planes.nbytes
+    for stride, shape in _TARGETS.items():
+        targets[stride] = np.ndarray((count, *shape), np.float16, memory.buf, offset)
+        offset += targets[stride].nbytes
+    return planes, targets
 
 
 def sample_of(image: ThermalImage, rng: Draw) -> tuple[Floats, Targets]:

@@ -19,9 +19,9 @@ from pydantic import Field
 from peopleboy.studies.training.detector.evaluation import log_odds_line
 from peopleboy.studies.training.detector.people_samples import (
     POSTURE_OF,
+    Batch,
     Floats,
-    Halves,
-    Targets,
+    SharedBatch,
     batch_of,
 )
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images, render_task
@@ -45,7 +45,6 @@ from peopleboy.tracker.sensors.thermal.detector.people_network import (
 from peopleboy.tracker.track import TrackPosture
 
 Draw = np.random.Generator
-Batch = tuple[Halves, Targets]
 
 VALIDATION: Final = 30
 """Number of worlds for evaluating the network: those of the first seeds."""
@@ -134,18 +133,17 @@ def batches(images: Sequence[ThermalImage], rng: Draw, count: int) -> Iterator[B
     Images with people are drawn more often.
     """
     weight = np.array([1.0 + min(len(image.box), _MOST_DRAWN) for image in images])
-
     cores = os.cpu_count() or 1
-    ready: deque[Future[Batch]] = deque()
+    ready: deque[Future[SharedBatch]] = deque()
     with ProcessPoolExecutor(cores, get_context("spawn")) as processes:
         for _ in range(count):
             rows = rng.choice(len(images), BATCH, p=weight / weight.sum())
             own = [images[row] for row in rows]
             ready.append(processes.submit(batch_of, own, int(rng.integers(2**63))))
             if len(ready) > _AHEAD * cores:
-                yield ready.popleft().result()
+                yield ready.popleft().result().take()
         while ready:
-            yield ready.popleft().result()
+            yield ready.popleft().result().take()
 
 
 def first_weights(rng: Draw) -> Weights:
@@ -198,7 +196,7 @@ def loss(weights: Weights, batch: Any, key: jax.Array) -> tuple[jax.Array, dict[
     planes, targets = batch
     sums = jnp.zeros(5)
     for stride, outputs in forward(weights, planes.astype(jnp.float32)).items():
-        sums += _sums(outputs, targets[stride])
+        sums += _sums(outputs, targets[stride].astype(jnp.float32))
     people, regressed = jnp.maximum(sums[0], 1.0), jnp.maximum(sums[1], 1.0)
     scores, boxes, postures = sums[2] / people, sums[3] / regressed, sums[4] / regressed
     total = scores + _BOXES * boxes + _POSTURES * postures
