@@ -81,7 +81,7 @@ class Panned:
         return np.array([[self.left - 300.0, 80.0, 16.0, 60.0]]), np.array([0.99])
 
 
-def test_who_stands_before_a_camera_that_pans_is_one_person() -> None:
+def test_a_person_before_a_camera_that_pans_is_one_person() -> None:
     wide = facade()
     tracker = PeopleTracker((ThermalSensor(detector=OwnDetector(Panned())),))
     ids = set()
