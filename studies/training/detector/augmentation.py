@@ -74,11 +74,6 @@ def recolour(image: ThermalImage, rng: Draw) -> ThermalImage:
         image = dim_people(image, rng)
     if rng.random() < _TEXTURED:
         image = add_texture(image, rng)
-    if rng.random() < _LIT:
-        image = add_light(image, rng)
-    for share, hide in ((_FENCED, _fence), (_TWIGGY, _twigs), (_COVERED, _things)):
-        if rng.random() < share:
-            image = put_in_front(image, hide(image.grey.shape, rng), rng)
     if rng.random() < _NEGATED:
         image = replace(image, grey=255 - image.grey)
     if rng.random() < _SOFT:
@@ -130,6 +125,25 @@ def add_texture(image: ThermalImage, rng: Draw) -> ThermalImage:
     level = rng.uniform(0.0, _MOST_TEXTURE) / max(float(texture.std()), 1e-6)
     patchy = cv2.resize(rng.uniform(0.0, 1.0, (3, 4)), (columns, rows))
     return replace(image, grey=_to_grey(image.grey + level * patchy * texture))
+
+
+def clutter(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Add sun and shade, fences, twigs and things in front of people, each with some probability."""
+    if rng.random() < _LIT:
+        image = add_light(image, rng)
+    for share, hide in ((_FENCED, _fence), (_TWIGGY, _twigs), (_COVERED, _things)):
+        if rng.random() < share:
+            image = put_in_front(image, hide(image.grey.shape, rng), rng)
+    return image
+
+
+def overlay(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Add figures and black borders, each with some probability."""
+    if rng.random() < _INSCRIBED:
+        image = inscribe(image, rng)
+    if rng.random() < _BLACKED:
+        image = blacken_borders(image, rng)
+    return image
 
 
 def add_light(image: ThermalImage, rng: Draw) -> ThermalImage:
@@ -361,10 +375,6 @@ def simulate_electronics(image: ThermalImage, rng: Draw) -> ThermalImage:
     if rng.random() < _SHARPENED:
         radius_px, gain = rng.uniform(*_RADII_PX), rng.uniform(0.0, _MOST_SHARPENED)
         image = replace(image, grey=sharpen(image.grey, radius_px, gain))
-    if rng.random() < _INSCRIBED:
-        image = inscribe(image, rng)
-    if rng.random() < _BLACKED:
-        image = blacken_borders(image, rng)
     if rng.random() < _COMPRESSED:
         image = replace(image, grey=compress(image.grey, int(rng.integers(*_QUALITIES))))
     return image

@@ -10,7 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body import skeleton
-from peopleboy.studies.training.detector.augmentation import augment, cut_off, simulate_electronics
+from peopleboy.studies.training.detector.augmentation import (
+    augment,
+    clutter,
+    cut_off,
+    overlay,
+    simulate_electronics,
+)
 from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.sensors.thermal.detector.people_network import (
@@ -120,7 +126,7 @@ def _arrays_in(memory: SharedMemory, count: int) -> Batch:
 def sample_of(image: ThermalImage, rng: Draw) -> tuple[Floats, Targets]:
     """Augment an image, and return the network's input (192, 256, 5) and its targets."""
     if rng.random() >= _AS_RENDERED:
-        image = simulate_electronics(augment(image, rng), rng)
+        image = overlay(simulate_electronics(augment(clutter(image, rng), rng), rng), rng)
     if rng.random() < _CUT:
         image = cut_off(image, rng)
     grey, change, corner, scale = _part(image, rng)
