@@ -104,8 +104,8 @@ def dim_people(image: ThermalImage, rng: Draw) -> ThermalImage:
     return replace(image, grey=_to_grey(grey), change=_to_grey(change))
 
 
-def _span(begin: float, length: float, most: int) -> tuple[int, int]:
-    margin = _RING * length
+def _span(begin: float, length: float, most: int, ring: float = _RING) -> tuple[int, int]:
+    margin = ring * length
     low, high = (int(np.clip(edge, 0, most)) for edge in (begin - margin, begin + length + margin + 1.0))
     return low, high
 
@@ -165,14 +165,12 @@ def put_in_front(image: ThermalImage, mask: Floats, rng: Draw) -> ThermalImage:
     grey = level + shown * (image.grey - level) + rng.normal(0.0, 1.5, mask.shape) * mask
     visible = image.visible.copy()
     for one, (left, top, width, height) in enumerate(image.whole.tolist()):
-        rows, columns = slice(*_inside(top, height, len(mask))), slice(*_inside(left, width, mask.shape[1]))
+        rows, columns = (
+            slice(*_span(top, height, len(mask), 0.0)),
+            slice(*_span(left, width, mask.shape[1], 0.0)),
+        )
         visible[one] *= float(shown[rows, columns].mean()) if shown[rows, columns].size else 1.0
     return replace(image, grey=_to_grey(grey), change=_to_grey(shown * image.change), visible=visible)
-
-
-def _inside(begin: float, length: float, most: int) -> tuple[int, int]:
-    low, high = (int(np.clip(edge, 0, most)) for edge in (begin, begin + length + 1.0))
-    return low, high
 
 
 def _fence(shape: tuple[int, ...], rng: Draw) -> Floats:
@@ -399,7 +397,7 @@ def inscribe(image: ThermalImage, rng: Draw) -> ThermalImage:
 
 
 def blacken_borders(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Blacken one or two borders, as of a picture that was fitted into another format."""
+    """Blacken opposite borders, as of a picture that was fitted into another format."""
     grey, change = image.grey.copy(), image.change.copy()
     for axis in (0, 1):
         if rng.random() < 0.6:

@@ -94,9 +94,7 @@ def batch_of(images: Sequence[ThermalImage], seed: int) -> SharedBatch:
     """Return a sample of each of N images: inputs (N, 192, 256, 5), and targets (N, H', W', 10) by stride."""
     rng = np.random.default_rng(seed)
     cv2.setNumThreads(1)  # there are as many processes as cores
-    memory = SharedMemory(
-        create=True, size=2 * len(images) * (math.prod(_PLANES) + sum(map(math.prod, _TARGETS.values())))
-    )
+    memory = SharedMemory(create=True, size=len(images) * _SAMPLE_BYTES)
     planes, targets = _arrays_in(memory, len(images))
     for number, image in enumerate(images):
         planes[number], own = sample_of(image, rng)
@@ -109,7 +107,6 @@ def batch_of(images: Sequence[ThermalImage], seed: int) -> SharedBatch:
 
 _PLANES: Final = (*CANVAS, PLANES)
 _TARGETS: Final = {stride: (CANVAS[0] // stride, CANVAS[1] // stride, 4 + BOX) for stride in STRIDES}
-
 _SAMPLE_BYTES: Final = 2 * sum(map(math.prod, (_PLANES, *_TARGETS.values())))
 
 
@@ -164,7 +161,7 @@ def _part(image: ThermalImage, rng: Draw) -> tuple[Grey, Grey, tuple[int, int], 
 
 
 def _stands_out(grey: Grey, whole: Boxes) -> NDArray[np.bool_]:
-    """Return whether there is anything to be seen of each person, or of the surroundings."""
+    """Return whether anything is to be seen in the box of each silhouette."""
     low = np.clip(np.floor(whole[:, :2]), 0, None).astype(np.int64)
     high = np.ceil(whole[:, :2] + whole[:, 2:]).astype(np.int64) + 1
     spreads = [

@@ -58,7 +58,7 @@ def test_a_camera_that_rolls_turns_the_image_about_its_middle() -> None:
     assert math.atan2(right[1], right[0]) == pytest.approx(roll, abs=2e-3)
 
 
-def test_odometry_counts_more_than_images_and_calibrated_cameras_need_it() -> None:
+def test_odometry_counts_more_than_images() -> None:
     wide, motion = facade(), CameraMotion()
     frames = [
         Frame(images={THERMAL: wide[:, left : left + COLUMNS]}, time_s=k / 30, odometry=odometry)
