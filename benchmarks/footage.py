@@ -17,7 +17,17 @@ import click
 import yaml
 
 from benchmarks import call
-from benchmarks.compare import METRICS, compare, false_per_1000, percents, print_head, print_row, print_table
+from benchmarks.altered_clips import ALTERATIONS, alter, altered_name
+from benchmarks.compare import (
+    METRICS,
+    compare,
+    false_per_1000,
+    percents,
+    print_head,
+    print_row,
+    print_table,
+    rows_of,
+)
 from benchmarks.real_clips import (
     CHOSEN_BY,
     PEERS,
@@ -59,6 +69,8 @@ _FOLDER: Final = click.Path(exists=True, file_okay=False, path_type=Path)
 OUT: Final = Path("runs/clips.json")
 _NONE: Final = "none"
 """Name of no peer."""
+_ALL: Final = "all"
+"""Name of all alterations."""
 
 COLUMNS: Final[Mapping[str, str]] = {
     "HOTA": "{:.1f}",
@@ -115,6 +127,7 @@ def bench_clips(
     rate_hz: float | None,
     seeds: int,
     jobs: int,
+    alterations: Sequence[str] = (),
 ) -> None:
     """Evaluate trackers and peers on clips, print a table, and write its metrics as JSON.
 
@@ -127,32 +140,84 @@ def bench_clips(
         rate_hz: frame rate; None for the default of `peopleboy track`.
         seeds: number of seeds per tracker, from 0 on.
         jobs: number of processes.
+        alterations: names of `ALTERATIONS`; each clip is evaluated altered by each of them, too.
 
     Raises:
         BadInput: clips or trackers cannot be used.
         TasksFailed: some evaluations failed.
     """
-    clips = {clip.name: clip for clip in open_clips(home, only, frames)}
+    given = open_clips(home, only, frames)
     for name in (*trackers, *peers):
         make_clip_tracker(name, 0)  # fails now rather than after other trackers have run
-    tasks = {}
-    for name, clip in clips.items():
-        ours = {
-            (name, one): [ClipTask(clip, one, seed, rate_hz) for seed in range(seeds)] for one in trackers
-        }
-        tasks |= ours | {(name, peer): [ClipTask(clip, peer, 0)] for peer in peers}
-    found = compare(tasks, Workers(jobs), "clips", unit="frames")
+    with tempfile.TemporaryDirectory() as folder:
+        altered = [alter(clip, name, Path(folder)) for clip in given for name in alterations]
+        clips = {clip.name: clip for clip in (*given, *altered)}
+        tasks = {}
+        for name, clip in clips.items():
+            ours = {
+                (name, one): [ClipTask(clip, one, seed, rate_hz) for seed in range(seeds)] for one in trackers
+            }
+            tasks |= ours | {(name, peer): [ClipTask(clip, peer, 0)] for peer in peers}
+        found = compare(tasks, Workers(jobs), "clips", unit="frames")
+    metrics = {
+        (name, tracker): clip_metrics(clips[name], results) for (name, tracker), results in found.items()
+    }
+    _print_clips(clips, metrics)
+    names = [clip.name for clip in given]
+    changes = {
+        tracker: {one: change_of_hota(metrics, tracker, names, one) for one in alterations}
+        for tracker in (*trackers, *peers)
+    }
+    if alterations:
+        click.echo()
+        print_table(["change of HOTA", *alterations], rows_of(changes, dict.fromkeys(alterations, "{:+.1f}")))
+    click.echo(f"\n{_split({clip.name: clip for clip in given})}")
+    runs = {key: len(results) for key, results in found.items()}
+    _keep(clips, metrics, runs, {tracker: {"changes": of_all} for tracker, of_all in changes.items()})
+
+
+def change_of_hota(
+    metrics: Mapping[tuple[str, str], Mapping[str, float]],
+    tracker: str,
+    clips: Sequence[str],
+    alteration: str,
+) -> float | None:
+    """Return by how much an alteration of the pictures changes the mean HOTA of clips [%].
+
+    Args:
+        metrics: by names of clip and tracker; altered clips are named as `alter` says.
+        tracker: name of the tracker.
+        clips: names of the clips; those whose HOTA is NaN are left out.
+        alteration: its name.
+    """
+    changed = [
+        metrics[altered_name(name, alteration), tracker]["HOTA"] - metrics[name, tracker]["HOTA"]
+        for name in clips
+    ]
+    known = [one for one in changed if not math.isnan(one)]
+    return mean(known) if known else None
+
+
+def _print_clips(
+    clips: Mapping[str, RealClip], metrics: Mapping[tuple[str, str], Mapping[str, float]]
+) -> None:
     print_head("clip", ("frames", "tracker", *COLUMNS), ["---:", "---", *["---:"] * len(COLUMNS)])
-    content: dict[str, dict[str, dict[str, float | None]]] = {}
-    for (name, tracker), results in found.items():
-        metrics, count = clip_metrics(clips[name], results), clips[name].frames
-        cells = [
-            "" if math.isnan(metrics[one]) else form.format(metrics[one]) for one, form in COLUMNS.items()
-        ]
-        print_row(name, (str(count), tracker, *cells))
-        known = {one: None if math.isnan(value) else value for one, value in metrics.items()}
-        content.setdefault(name, {})[tracker] = {"runs": len(results), "frames": count} | known
-    click.echo(f"\n{_split(clips)}")
+    for (name, tracker), found in metrics.items():
+        cells = ["" if math.isnan(found[one]) else form.format(found[one]) for one, form in COLUMNS.items()]
+        print_row(name, (str(clips[name].frames), tracker, *cells))
+
+
+def _keep(
+    clips: Mapping[str, RealClip],
+    metrics: Mapping[tuple[str, str], Mapping[str, float]],
+    runs: Mapping[tuple[str, str], int],
+    content: dict[str, dict[str, Any]],
+) -> None:
+    """Write metrics as JSON, by clip and tracker."""
+    for (name, tracker), found in metrics.items():
+        known = {one: None if math.isnan(value) else value for one, value in found.items()}
+        counts = {"runs": runs[name, tracker], "frames": clips[name].frames}
+        content.setdefault(name, {})[tracker] = counts | known
     OUT.parent.mkdir(parents=True, exist_ok=True)
     OUT.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
@@ -195,16 +260,28 @@ def _split(clips: Mapping[str, RealClip]) -> str:
 @click.option(
     "--rate-hz", type=click.FloatRange(min=0.1), help="Frame rate.  [default: as `peopleboy track`]"
 )
+@click.option(
+    "--altered",
+    "alterations",
+    multiple=True,
+    type=click.Choice((*ALTERATIONS, _ALL)),
+    help="Also evaluate on --clips altered like this, for robustness; may be repeated.",
+)
 @click.option("--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="Seeds per tracker.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Number of processes.")
-def main(clips: Path | None, peers: Sequence[str], **how: Any) -> None:
+def main(clips: Path | None, peers: Sequence[str], alterations: Sequence[str], **how: Any) -> None:
     """Print metrics of the default tracker in library scenes, or of trackers and peers on clips.
 
     Metrics are in percent. AP and AP50 are average precisions of the detections, by COCO's rules; people are
     small below 48 px, and large from 96 px on. Those of --clips are also written to runs/clips.json.
     """
     if clips is not None:
-        bench_clips(clips, peers=[peer for peer in peers if peer != _NONE], **how)
+        bench_clips(
+            clips,
+            peers=[peer for peer in peers if peer != _NONE],
+            alterations=tuple(ALTERATIONS) if _ALL in alterations else alterations,
+            **how,
+        )
         return
     with tempfile.TemporaryDirectory() as folder:
         _show_rooms(Path(folder))

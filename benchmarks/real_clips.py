@@ -12,7 +12,7 @@ import numpy as np
 from benchmarks.compare import timed_ms
 from benchmarks.peers.ours import Detecting, Ours
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.footage.options import TrackOptions
+from peopleboy.scenarios.footage.options import DEFAULT_RATE_HZ, TrackOptions
 from peopleboy.scenarios.footage.views import ThermalViews, open_views
 from peopleboy.scenarios.running.engine.task import ReportProgress
 from peopleboy.tracker.boxes import Floats
@@ -40,11 +40,13 @@ class RealClip:
         folder: folder of the clip; its images are there or in a subfolder such as `thermal`.
         given: ground truth of these frames.
         frames: number of frames.
+        step: frames of the camera per frame.
     """
 
     folder: Path
     given: GivenTruth
     frames: int
+    step: int = 1
 
     @property
     def name(self) -> str:
@@ -114,7 +116,7 @@ class ClipTask:
         clip: the clip.
         tracker: name of a tracker, or of one of `PEERS`.
         seed: seed of the tracker; peers are deterministic.
-        rate_hz: frame rate; None for the default of folders.
+        rate_hz: frame rate of the camera; None for the default of folders.
     """
 
     clip: RealClip
@@ -140,9 +142,10 @@ class ClipTask:
         """
         contestant = make_clip_tracker(self.tracker, self.seed)
         name = DEFAULT_TRACKER if self.tracker in PEERS else self.tracker
-        views = open_views(
-            TrackOptions(footage=self.clip.folder, out=Path(), tracker=name, rate_hz=self.rate_hz)
-        )
+        rate_hz = self.rate_hz
+        if self.clip.step > 1:
+            rate_hz = (rate_hz or DEFAULT_RATE_HZ) / self.clip.step
+        views = open_views(TrackOptions(footage=self.clip.folder, out=Path(), tracker=name, rate_hz=rate_hz))
         rows: list[tuple[int, int, Floats]] = []
         detected: list[tuple[int, int, Floats, float]] = []
         times_ms = []

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from benchmarks.footage import OUT, clip_metrics, main
+from benchmarks.altered_clips import ALTERATIONS, alter, altered_name
+from benchmarks.footage import OUT, change_of_hota, clip_metrics, main
 from benchmarks.real_clips import ClipResult, open_clips, score_clip
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
+from peopleboy.tracker.footage.image_sequences import open_footage
 from tests.helpers.calls.refused import assert_names, refused
 
 FRAMES = 12
@@ -139,3 +141,32 @@ def test_a_clip_or_tracker_that_there_is_not_is_refused(tmp_path: Path) -> None:
         told = call("--clips", tmp_path, "--tracker", tracker)
         assert isinstance(told.exception, BadInput)
         assert_names(str(told.exception), word)
+
+
+@pytest.mark.parametrize("name", ALTERATIONS)
+def test_truth_moves_with_altered_pictures(name: str, tmp_path: Path) -> None:
+    write_clip(tmp_path / "street")
+    (clip,) = open_clips(tmp_path)
+    altered = alter(clip, name, tmp_path / "altered")
+    pictures = list(open_footage(altered.folder))
+    assert len(pictures) == altered.frames == (FRAMES // 2 if name == "half rate" else FRAMES)
+    walker = altered.given.truth.take(altered.given.truth.id == 1)
+    assert walker.frame.tolist() == list(range(1, altered.frames + 1))
+    grey = np.asarray(pictures[0] if pictures[0].ndim == 2 else pictures[0].max(axis=2), float)
+    left, top, width, height = np.round(walker.box[0]).astype(int)
+    inside = np.median(grey[top : top + height, left + 8 : left + width - 8])
+    around = np.median(grey[grey.shape[0] // 4 : -grey.shape[0] // 4, :20])
+    assert (inside > around) == (name != "black-hot")
+
+
+def test_change_of_hota_is_a_mean_over_clips_that_have_one() -> None:
+    metrics = {
+        ("a", "t"): {"HOTA": 60.0},
+        ("b", "t"): {"HOTA": 50.0},
+        ("c", "t"): {"HOTA": np.nan},
+        (altered_name("a", "ironbow"), "t"): {"HOTA": 59.0},
+        (altered_name("b", "ironbow"), "t"): {"HOTA": 46.0},
+        (altered_name("c", "ironbow"), "t"): {"HOTA": np.nan},
+    }
+    assert change_of_hota(metrics, "t", ["a", "b", "c"], "ironbow") == -2.5
+    assert change_of_hota(metrics, "t", ["c"], "ironbow") is None
