@@ -24,6 +24,8 @@ from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 VERTICAL_FOV_DEG: Final = 43.0
 """Vertical field of view of the depth sensor that the tracker was designed for."""
+USUAL_HEIGHT_M: Final = 1.2
+"""Height of a camera above the floor where it is neither given nor found."""
 STEEPEST_DEG: Final = 60.0
 LEVEL_DEG: Final = 10.0
 """Maximum tilt at which boxes and floor positions are accurate; the tracker assumes a horizontal camera."""
@@ -38,9 +40,20 @@ class FootageCamera:
     """
 
     height_m: Annotated[
-        float, Field(alias="camera_height_m", description="Height of the camera above the floor.")
-    ] = 1.2
-    pitch_deg: Annotated[float, Field(description="Pitch of the camera; positive values point down.")] = 0.0
+        float | None,
+        Field(
+            alias="camera_height_m",
+            description="Height of the camera above the floor.  [default: with --depth, that of the floor in "
+            "the images]",
+        ),
+    ] = None
+    pitch_deg: Annotated[
+        float | None,
+        Field(
+            description="Pitch of the camera; positive values point down.  [default: with --depth, that of "
+            "the floor in the images, otherwise 0]"
+        ),
+    ] = None
     focal_px: Annotated[
         float | None, Field(description="Focal length of the camera, instead of --vertical-fov-deg.")
     ] = None
@@ -60,7 +73,7 @@ class FootageCamera:
     @property
     def notes(self) -> list[str]:
         """Known limitations of the tracker with this camera."""
-        if abs(self.pitch_deg) <= LEVEL_DEG:
+        if self.pitch_deg is None or abs(self.pitch_deg) <= LEVEL_DEG:
             return []
         return [
             f"boxes and positions are inaccurate beyond {LEVEL_DEG:g} degrees of pitch; keep the camera level"
@@ -72,8 +85,8 @@ class FootageCamera:
             width=width,
             height=height,
             vertical_fov_rad=self._angle_rad(height),
-            position_m=(0.0, 0.0, self.height_m),
-            pitch_rad=math.radians(self.pitch_deg),
+            position_m=(0.0, 0.0, USUAL_HEIGHT_M if self.height_m is None else self.height_m),
+            pitch_rad=math.radians(self.pitch_deg or 0.0),
         )
 
     def calibration(self, width: int, height: int) -> PinholeCalibration:

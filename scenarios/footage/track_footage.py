@@ -12,7 +12,7 @@ from typing import Any, Final
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import at_frame, traceback_to
 from peopleboy.scenarios.footage.footage_output import FootageLog
-from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
+from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import Views, open_views
 from peopleboy.scenarios.run_folder.atomic_output import atomic_folder, check_named
 from peopleboy.scenarios.run_folder.folder import versions
@@ -241,7 +241,10 @@ def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:
 
 def _what_to_look_at(options: TrackOptions) -> str:
     if options.rgbd is not None:
-        return _what_depth_asks(options.rgbd)
+        return (
+            "is the camera's pose right (--camera-height-m, --pitch-deg)? Do people stand upright? Are they "
+            "within depth range?"
+        )
     is_black_hot = options.radiometry.polarity is Polarity.BLACK_HOT
     remedy = f"give --polarity {Polarity.WHITE_HOT if is_black_hot else Polarity.BLACK_HOT}"
     asked = f"are warm objects bright? If not, {remedy}."
@@ -250,14 +253,6 @@ def _what_to_look_at(options: TrackOptions) -> str:
         if not options.radiometry.is_known:
             asked += " Are temperatures known? Then give --temperature-range (8 bit) or --scale (16 bit)."
     return f"{asked} Is the people's outline visible, or only a hot face?"
-
-
-def _what_depth_asks(rgbd: RgbdOptions) -> str:
-    camera = rgbd.camera
-    return (
-        f"was the camera {camera.height_m:g} m above the floor (--camera-height-m), and tilted down by "
-        f"{camera.pitch_deg:g} degrees (--pitch-deg)? Do people stand upright? Are they within depth range?"
-    )
 
 
 def _heights(tracker: str) -> str:

@@ -1,5 +1,6 @@
 """Read footage of any kind as frames: thermal with optional colour, or colour with depth."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, replace
 from itertools import chain, islice, zip_longest
@@ -31,8 +32,12 @@ from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, ra
 from peopleboy.tracker.footage.thermal_images import ThermalImages, check_image, read_mask
 from peopleboy.tracker.footage.time_stamps import read_time_stamps, time_stamps
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
+from peopleboy.tracker.sensors.depth.depth_view import DepthView
+from peopleboy.tracker.sensors.depth.v_disparity import pose_above_floor
 from peopleboy.tracker.trackers import uses_contrast
 
+POSE_IMAGES: Final = 10
+"""Number of depth images, over the whole sequence, in which the floor is searched for."""
 _COLOUR_FOLDERS: Final = ("rgb", "color")
 """Where RGB-D benchmarks keep the colour images beside the depth images."""
 
@@ -55,8 +60,7 @@ class RgbdViews:
         self._options, self._rgbd = options, rgbd
         self._counts = DepthCounts(rgbd.depth, rgbd.m_per_count)
         folders = [_folder(path, image, rgbd.depth) for path, image in _folders(options, rgbd)]
-        all_notes = [*rgbd.camera.notes, *(note for folder in folders for note in folder.notes)]
-        self.notes = list(dict.fromkeys(all_notes))
+        self.notes = list(dict.fromkeys(note for folder in folders for note in folder.notes))
         self._pairs = pair_up(folders[0].paths, folders[1].paths)
         self.notes += [self._pairs.note] if self._pairs.note else []
         self.expected = len(self._pairs.colour)
@@ -72,7 +76,34 @@ class RgbdViews:
             self._odometry = load_odometry(rgbd.odometry, self.expected)
         first = read_picture(self._pairs.colour[0], [])
         check_image(first, str(options.footage))
-        self._geometry = rgbd.camera.geometry(first.shape[1], first.shape[0])
+        self._camera = self._with_pose(rgbd.camera, (first.shape[1], first.shape[0]))
+        self.notes += self._camera.notes
+        self._geometry = self._camera.geometry(first.shape[1], first.shape[0])
+
+    def _with_pose(self, camera: FootageCamera, size: tuple[int, int]) -> FootageCamera:
+        """Add the height and the pitch that were not given, by the floor in the depth images."""
+        if camera.height_m is not None and camera.pitch_deg is not None:
+            return camera
+        paths = self._pairs.depth[:: max(len(self._pairs.depth) // POSE_IMAGES, 1)][:POSE_IMAGES]
+        depths = (self._counts(picture) for picture in read_row(paths, []))
+        pose = pose_above_floor(depths, DepthView.of(camera.calibration(*size), DEPTH))
+        if pose is None:
+            self.notes.append(
+                f"camera: no floor was found in the depth images; it is assumed to be "
+                f"{camera.geometry(*size).position_m[2]:g} m above the floor; --camera-height-m and "
+                "--pitch-deg set its pose"
+            )
+            return camera
+        height_m, pitch_deg = round(pose[0], 3), round(math.degrees(pose[1]), 2)
+        self.notes.append(
+            f"camera: {height_m:.2f} m above the floor, with a pitch of {pitch_deg:.1f} degrees, by the "
+            "floor in the depth images; --camera-height-m and --pitch-deg set its pose"
+        )
+        return replace(
+            camera,
+            height_m=height_m if camera.height_m is None else camera.height_m,
+            pitch_deg=pitch_deg if camera.pitch_deg is None else camera.pitch_deg,
+        )
 
     def __iter__(self) -> Iterator[Frame]:
         """Yield frames with colour and depth of the same instants.
@@ -80,7 +111,7 @@ class RgbdViews:
         Raises:
             BadInput: an image is unusable, or depth and colour differ in size.
         """
-        calibration = self._rgbd.camera.calibration(self._geometry.width, self._geometry.height)
+        calibration = self._camera.calibration(self._geometry.width, self._geometry.height)
         colours, depths = (read_row(paths, self.notes) for paths in (self._pairs.colour, self._pairs.depth))
         for number, (colour, counts) in enumerate(zip(colours, depths, strict=True)):
             if colour.shape[:2] != counts.shape[:2]:
@@ -113,8 +144,8 @@ class RgbdViews:
             "depth": rgbd.depth.name,
             "depth_scale_m": rgbd.m_per_count,
             "camera": {
-                "height_m": rgbd.camera.height_m,
-                "pitch_deg": rgbd.camera.pitch_deg,
+                "height_m": self._geometry.position_m[2],
+                "pitch_deg": self._camera.pitch_deg or 0.0,
                 "focal_px": self._geometry.focal_px,
                 "centre_px": self._geometry.centre_px,
             },
@@ -165,6 +196,7 @@ def _mount_of(options: TrackOptions, lens: Lens | None) -> FootageCamera | None:
     mount = options.mount
     if mount is None:
         return None
+    mount = replace(mount, pitch_deg=mount.pitch_deg or 0.0)
     is_known = mount.focal_px is not None or mount.vertical_fov_deg is not None
     if lens is not None and is_known:
         raise BadInput("--calibration has the focal length; leave --focal-px and --vertical-fov-deg out")

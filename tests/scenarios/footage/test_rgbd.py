@@ -40,6 +40,7 @@ SCENE: dict[str, Any] = {
     },
 }
 LENS_M = 0.14  # the robot's depth camera, ahead of its centre
+POSE = ("--camera-height-m", 1.2, "--pitch-deg", 0)
 STAMPS = ["7.10", "7.20", "7.30", "7.40"]
 
 
@@ -150,6 +151,20 @@ def test_the_camera_looks_where_it_is_said_to(tmp_path: Path) -> None:
     assert seen.project(np.array([[lowest, 0.0, 0.0]]))[0] == pytest.approx([159.5, 239.5])
 
 
+def test_a_pose_that_is_not_given_is_that_of_the_floor(tmp_path: Path) -> None:
+    colour, depth = write_rgbd(tmp_path)
+    (found,) = {frame.calibrations[DEPTH].position_m[2] for frame in frames(colour, depth)}
+    assert found == pytest.approx(1.2, abs=0.02)
+    assert_names(call(colour, *options(depth)).stderr, "note: camera", "above the floor", "--pitch-deg")
+    camera = FootageCamera(height_m=1.5)
+    (given,) = {frame.calibrations[DEPTH].position_m[2] for frame in frames(colour, depth, camera=camera)}
+    assert given == 1.5
+    for path in depth.iterdir():
+        write_counts(path, np.full((240, 320), 2000.0))
+    told = call(colour, *options(depth), "--overwrite").stderr
+    assert_names(told, "note: camera: no floor", "1.2 m", "--camera-height-m")
+
+
 def test_pictures_named_by_seconds_go_together_by_time_and_tell_it(tmp_path: Path) -> None:
     colour, depth = write_rgbd(tmp_path, stamps=STAMPS, depth_stamps=["7.12", "7.19", "7.33", "7.41"])
     write_counts(depth / "6.90.png", np.zeros((240, 320)))
@@ -159,7 +174,8 @@ def test_pictures_named_by_seconds_go_together_by_time_and_tell_it(tmp_path: Pat
         np.testing.assert_array_equal(frame.depth(DEPTH), depth_mm(k))
     assert_names(refused_call(colour, depth, "--rate-hz", 10), "--rate-hz", "times")
     (depth / "7.33.png").rename(depth / "7.36.png")
-    assert_names(call(colour, *options(depth)).stderr, "note: ", colour / "7.30.png", "1 of 4 pictures")
+    told = call(colour, *options(depth), *POSE).stderr
+    assert_names(told, "note: ", colour / "7.30.png", "1 of 4 pictures")
     for name in ("7.12", "7.19"):
         (depth / f"{name}.png").unlink()
     assert_names(refused_call(colour, depth), "0.050 s", "3 of 4 pictures")
@@ -167,7 +183,7 @@ def test_pictures_named_by_seconds_go_together_by_time_and_tell_it(tmp_path: Pat
 
 def test_who_looks_down_too_far_is_told(tmp_path: Path) -> None:
     colour, depth = write_rgbd(tmp_path, 1)
-    assert "pitch" not in call(colour, *options(depth), "--pitch-deg", 10).stderr
+    assert "10 degrees" not in call(colour, *options(depth), "--pitch-deg", 10).stderr
     told = call(colour, *options(depth), "--pitch-deg", -20, "--overwrite").stderr
     assert "10 degrees of pitch" in told
 

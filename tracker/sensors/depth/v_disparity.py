@@ -1,5 +1,7 @@
 """Detection of floor and ceiling as oblique lines in the v-disparity image."""
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
@@ -20,6 +22,9 @@ _LEAST_VOTES: Final = 400.0
 _ROWS_PER_BIN: Final = BIN_PX / BASELINE_M  # slope of a line for each metre below the camera
 _SHIFT_PX: Final = 16.0
 _FLOOR_M: Final = (0.3, 2.4)  # range of the camera's height above the floor
+_STEEPEST_RAD: Final = math.radians(45.0)
+_TOLERANCES_M: Final = (0.12, 0.08, 0.05, 0.05)
+_LEAST_SPREAD: Final = 0.06  # standard deviation of depths by their mean
 _CEILING_M: Final = (-3.2, -0.7)
 
 
@@ -49,21 +54,61 @@ def v_disparity(depth: Depth, view: DepthView) -> Counts:
     return _histogram(depth, _bin_of_mm(view.disparity_px_m))
 
 
-def find_floor(counts: Counts, view: DepthView) -> HeightLine | None:
-    """Return the line of the floor by a Hough vote over height and horizon, or None."""
-    return _strongest(counts, view, *_FLOOR_M)
+def find_floor(counts: Counts, view: DepthView, shift_px: float = _SHIFT_PX) -> HeightLine | None:
+    """Return the line of the floor by a Hough vote over height and horizon, or None.
+
+    Args:
+        counts: from `v_disparity`.
+        view: geometry of the image.
+        shift_px: how far the horizon may be from where the view has it.
+    """
+    return _strongest(counts, view, *_FLOOR_M, shift_px)
+
+
+def pose_above_floor(depths: Iterable[Depth], view: DepthView) -> tuple[float, float] | None:
+    """Return height above the floor [m] and pitch [rad] of a camera, positive down, from its depth images.
+
+    The medians over the images in which a floor is found; None if it is in fewer than half of them.
+    """
+    widest_px = view.focal_px * math.tan(_STEEPEST_RAD)
+    fitted = []
+    for depth in depths:
+        line = find_floor(v_disparity(depth, view), view, widest_px)
+        fitted.append(None if line is None else _fitted(line, depth, view))
+    floors = [one for one in fitted if one is not None]
+    if not floors or 2 * len(floors) < len(fitted):
+        return None
+    slope, offset_m = np.median([(one.slope, one.offset_m) for one in floors], axis=0).tolist()
+    return offset_m / math.hypot(1.0, slope), -math.atan(slope)
+
+
+def _fitted(line: HeightLine, depth: Depth, view: DepthView) -> HeightLine | None:
+    """Fit a line to the readings of a depth image near it, by least squares; None if it is of a wall.
+
+    A vote is too coarse if the floor is only seen far away.
+    """
+    z_m = depth[depth > 0] / 1000.0
+    y_m = (np.nonzero(depth)[0] - view.centre_v) * z_m / view.focal_px
+    for tolerance_m in _TOLERANCES_M:
+        is_near = np.abs(y_m - line.slope * z_m - line.offset_m) < tolerance_m
+        if not is_near.any() or np.std(z_m[is_near]) < _LEAST_SPREAD * np.mean(z_m[is_near]):
+            return None
+        line = HeightLine(*np.polyfit(z_m[is_near], y_m[is_near], 1).tolist())
+    return line
 
 
 def find_ceiling(counts: Counts, view: DepthView) -> HeightLine | None:
     """Return the line of the ceiling by the same vote, or None."""
-    return _strongest(counts, view, *_CEILING_M)
+    return _strongest(counts, view, *_CEILING_M, _SHIFT_PX)
 
 
-def _strongest(counts: Counts, view: DepthView, lowest_m: float, highest_m: float) -> HeightLine | None:
+def _strongest(
+    counts: Counts, view: DepthView, lowest_m: float, highest_m: float, shift_px: float
+) -> HeightLine | None:
     """Return the line with the most votes; its slope is the horizon's shift in focal lengths (4.11)."""
     horizon = view.centre_v + view.horizon_px
     heights = np.arange(lowest_m, highest_m, 0.04)
-    rows = horizon + np.arange(-_SHIFT_PX, _SHIFT_PX + 1.0, 2.0)
+    rows = horizon + np.arange(-shift_px, shift_px + 1.0, 2.0)
     votes = _hough(counts, rows, heights * _ROWS_PER_BIN, 2)
     best, row = np.unravel_index(int(np.argmax(votes)), votes.shape)
     if votes[best, row] < _LEAST_VOTES:
