@@ -16,8 +16,8 @@ import numpy as np
 
 from benchmarks import call
 from benchmarks.compare import Recording, false_per_1000, percents, print_head, print_row, record
+from benchmarks.footage.real_clips import CHOSEN_BY, RealClip, open_clips
 from benchmarks.peers.detectors import Blobs
-from benchmarks.real_clips import CHOSEN_BY, RealClip, open_clips
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import open_views
 from peopleboy.scenarios.random_worlds.random_world import random_scenario

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from benchmarks.altered_clips import ALTERATIONS, alter, altered_name
-from benchmarks.footage import OUT, change_of_hota, clip_metrics, main
-from benchmarks.real_clips import ClipResult, open_clips, score_clip
+from benchmarks.footage.__main__ import main
+from benchmarks.footage.altered_clips import ALTERATIONS, alter, altered_name
+from benchmarks.footage.compare_clips import OUT, change_of_hota, clip_metrics
+from benchmarks.footage.real_clips import ClipResult, open_clips, score_clip
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.sequence import TrackBoxes

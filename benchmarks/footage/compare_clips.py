@@ -1,77 +1,31 @@
-"""Tracking quality in footage of unknown temperatures: `python -m benchmarks.footage`.
-
-Scenes of the library are rendered, and their 16-bit images are tracked like foreign footage: without a
-temperature scale and without the robot's motion. In a hot room clothes are colder than the walls.
-`--clips DIR` evaluates on real clips instead, compared with OpenCV's HOG with ByteTrack.
-"""
+"""Comparison of trackers and peers on clips: a table, changes by alterations, and a JSON file."""
 
 import json
 import math
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from statistics import mean
 from typing import Any, Final
 
 import click
-import yaml
 
-from benchmarks import call
-from benchmarks.altered_clips import ALTERATIONS, alter, altered_name
-from benchmarks.compare import (
-    METRICS,
-    compare,
-    false_per_1000,
-    percents,
-    print_head,
-    print_row,
-    print_table,
-    rows_of,
-)
-from benchmarks.real_clips import (
+from benchmarks.compare import METRICS, compare, false_per_1000, print_head, print_row, print_table, rows_of
+from benchmarks.footage.altered_clips import alter, altered_name
+from benchmarks.footage.real_clips import (
     CHOSEN_BY,
-    PEERS,
     ClipResult,
     ClipTask,
     RealClip,
     make_clip_tracker,
     open_clips,
 )
-from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.files.scenario_file import to_data
-from peopleboy.scenarios.footage.options import TrackOptions
-from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.scenarios.running.run import run
-from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.tracker.evaluation.average_precision import average_precision
-from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
-from peopleboy.tracker.trackers import DEFAULT_TRACKER
-
-SCENES: Final = (
-    "crossing_2",
-    "crossing_2_moving",
-    "pass_behind",
-    "sitting",
-    "stop_and_talk",
-    "group_abreast",
-    "empty_room",
-)
-ROOMS: Final[Mapping[str, Mapping[str, float]]] = {
-    "a room of 21 degC": {},
-    "a room of 31 degC": {"floor_c": 30.0, "walls_c": 31.0, "ceiling_c": 32.0, "surroundings_c": 31.0},
-}
-DURATION_S: Final = 12.0
-SEED: Final = 1
-_FOLDER: Final = click.Path(exists=True, file_okay=False, path_type=Path)
 
 OUT: Final = Path("runs/clips.json")
-_NONE: Final = "none"
-"""Name of no peer."""
-_ALL: Final = "all"
-"""Name of all alterations."""
-
 COLUMNS: Final[Mapping[str, str]] = {
     "HOTA": "{:.1f}",
     "IDF1": "{:.1f}",
@@ -117,7 +71,7 @@ def detection_metrics(clip: RealClip, detections: TrackBoxes) -> dict[str, float
     return {"AP": every.ap, "AP50": every.ap50, **sizes}
 
 
-def bench_clips(
+def compare_clips(
     home: Path,
     *,
     trackers: Sequence[str],
@@ -233,103 +187,3 @@ def _split(clips: Mapping[str, RealClip]) -> str:
         f"- not used for tuning: {listed(lambda name: name not in CHOSEN_BY)}\n"
         f"- only one of several people annotated: {listed(lambda name: clips[name].given.is_single)}"
     )
-
-
-@click.command()
-@click.option(
-    "--clips", type=_FOLDER, help="Folder of clips, NAME/thermal and NAME/gt.txt, or images with truth."
-)
-@click.option(
-    "--tracker",
-    "trackers",
-    multiple=True,
-    default=(DEFAULT_TRACKER,),
-    show_default=True,
-    help="Tracker to evaluate on --clips; may be repeated.",
-)
-@click.option(
-    "--peer",
-    "peers",
-    multiple=True,
-    type=click.Choice((*PEERS, _NONE)),
-    default=tuple(PEERS),
-    help="Peer to evaluate on --clips; may be repeated.  [default: all]",
-)
-@click.option("--only", multiple=True, help="Name of a clip to use; may be repeated.")
-@click.option("--frames", type=click.IntRange(min=1), help="Number of frames to use of each clip.")
-@click.option(
-    "--rate-hz", type=click.FloatRange(min=0.1), help="Frame rate.  [default: as `peopleboy track`]"
-)
-@click.option(
-    "--altered",
-    "alterations",
-    multiple=True,
-    type=click.Choice((*ALTERATIONS, _ALL)),
-    help="Also evaluate on --clips altered like this, for robustness; may be repeated.",
-)
-@click.option("--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="Seeds per tracker.")
-@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Number of processes.")
-def main(clips: Path | None, peers: Sequence[str], alterations: Sequence[str], **how: Any) -> None:
-    """Print metrics of the default tracker in library scenes, or of trackers and peers on clips.
-
-    Metrics are in percent. AP and AP50 are average precisions of the detections, by COCO's rules; people are
-    small below 48 px, and large from 96 px on. Those of --clips are also written to runs/clips.json.
-    """
-    if clips is not None:
-        bench_clips(
-            clips,
-            peers=[peer for peer in peers if peer != _NONE],
-            alterations=tuple(ALTERATIONS) if _ALL in alterations else alterations,
-            **how,
-        )
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        _show_rooms(Path(folder))
-
-
-def _show_rooms(folder: Path) -> None:
-    shown = ("CP", "CR", "AA", "IDF1", "HOTA")
-    rows = []
-    for room, temperatures in ROOMS.items():
-        scores = combine(list(_scores_of(temperatures, folder / room.replace(" ", "-"))))
-        rows.append([room, *percents(scores, *shown), str(scores.counts.false_tracks)])
-    print_table(["scenes in", *shown, "false tracks"], rows)
-
-
-def _scores_of(temperatures: Mapping[str, float], folder: Path) -> Iterator[Scores]:
-    for scene in SCENES:
-        home = folder / scene
-        _play(scene, temperatures, home)
-        options = TrackOptions(
-            footage=home / "thermal16", truth=home / "truth" / "gt.txt", out=folder / f"{scene}-tracked"
-        )
-        yield _tracked(options)
-
-
-def _play(scene: str, temperatures: Mapping[str, float], home: Path) -> None:
-    """Run a scene of the library at these room temperatures, and keep its images and ground truth."""
-    changed: dict[str, Any] = {
-        "name": scene,
-        "description": f"{scene}, shortened",
-        "like": scene,
-        "duration_s": DURATION_S,
-    }
-    if temperatures:
-        place = to_data(load_scenario(scene).spec)["place"]
-        changed["place"] = place | {"temperatures": dict(temperatures)}
-    path = home.with_suffix(".yaml")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(yaml.safe_dump(changed), encoding="utf-8")
-    options = RunOptions(seed=SEED, out=home, frames=True, tracker="truth", record=False)
-    run(load_scenario(path), options, lambda *_: None)
-
-
-def _tracked(options: TrackOptions) -> Scores:
-    scores = track_footage(options, lambda *_: None).scores
-    if scores is None:
-        raise click.BadParameter(f"{options.footage}: no ground truth next to the images")
-    return scores
-
-
-if __name__ == "__main__":
-    call(main, "benchmarks.footage")

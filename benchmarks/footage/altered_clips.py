@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.real_clips import RealClip
+from benchmarks.footage.real_clips import RealClip
 from peopleboy.tracker.footage.image_sequences import open_footage
 
 Picture = NDArray[np.uint8]
