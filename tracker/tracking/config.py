@@ -303,6 +303,7 @@ class PeopleTrackerConfig:
     )
     existence_uncalibrated: ExistenceConfig = field(
         default_factory=lambda: ExistenceConfig(
+            lasting=0.0,
             birth=0.5,
             sightings=4,
             at_once=math.inf,
