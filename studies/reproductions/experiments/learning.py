@@ -17,11 +17,10 @@ from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.studies.training.occlusion import (
     LEAST,
     SCENARIOS,
-    PairSamples,
     accuracy,
     boost,
-    collect_pairs,
 )
+from peopleboy.studies.training.occlusion_pairs import PairSamples, collect_pairs
 from peopleboy.studies.training.samples import Split
 from peopleboy.studies.training.weak_classifiers import weighted_sums
 from peopleboy.tracker.reproductions.contour.occlusion.learned_table import LearnedTable

@@ -1,17 +1,14 @@
 """Augmentation of thermal images: mirroring, crops, other cameras, and other temperature spans."""
 
 import math
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Final, NamedTuple
+from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.imaging.electronics import compress
 from peopleboy.studies.training.detector.world_sequences import HIGHEST, ThermalImage
-from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.sensors.thermal.detector.window import WindowKind
 
 Grey = NDArray[np.uint8]
@@ -42,13 +39,6 @@ _OCTAVES_PX: Final = (3, 7, 16, 40)
 _DIM_GAINS: Final = (0.2, 1.0)
 _DARK: Final = 0.25  # share of the dimmed people who become darker than their surroundings
 _RING: Final = 0.15  # width of the surroundings, in heights
-_FENCED: Final = 0.12  # shares of images with fences, ...
-_TWIGGY: Final = 0.1  # ... twigs, ...
-_COVERED: Final = 0.1  # ... and things in front of people
-_LIT: Final = 0.2
-_MOST_LIGHT: Final = 60.0  # [grey]
-_BLACKED: Final = 0.08  # share of images with black borders ...
-_INSCRIBED: Final = 0.1  # ... and with burnt-in figures
 
 
 def augment(image: ThermalImage, rng: Draw) -> ThermalImage:
@@ -89,7 +79,7 @@ def dim_people(image: ThermalImage, rng: Draw) -> ThermalImage:
     for left, top, width, height in image.whole.tolist():
         gain = rng.uniform(*_DIM_GAINS)
         sign = -1.0 if rng.random() < _DARK else 1.0
-        rows, columns = slice(*_span(top, height, len(grey))), slice(*_span(left, width, grey.shape[1]))
+        rows, columns = slice(*span(top, height, len(grey))), slice(*span(left, width, grey.shape[1]))
         here, changed = grey[rows, columns], change[rows, columns]
         if not here.size:
             continue
@@ -101,10 +91,11 @@ def dim_people(image: ThermalImage, rng: Draw) -> ThermalImage:
         surroundings = float(np.median(edge))
         here[:] = surroundings + factor * (here - surroundings)
         changed *= np.abs(factor)
-    return replace(image, grey=_to_grey(grey), change=_to_grey(change))
+    return replace(image, grey=to_grey(grey), change=to_grey(change))
 
 
-def _span(begin: float, length: float, most: int, ring: float = _RING) -> tuple[int, int]:
+def span(begin: float, length: float, most: int, ring: float = _RING) -> tuple[int, int]:
+    """Return the first pixel of an interval with its surroundings, and the one after the last, of `most`."""
     margin = ring * length
     low, high = (int(np.clip(edge, 0, most)) for edge in (begin - margin, begin + length + margin + 1.0))
     return low, high
@@ -124,93 +115,7 @@ def add_texture(image: ThermalImage, rng: Draw) -> ThermalImage:
         texture += cv2.resize(coarse, (columns, rows), interpolation=cv2.INTER_CUBIC)
     level = rng.uniform(0.0, _MOST_TEXTURE) / max(float(texture.std()), 1e-6)
     patchy = cv2.resize(rng.uniform(0.0, 1.0, (3, 4)), (columns, rows))
-    return replace(image, grey=_to_grey(image.grey + level * patchy * texture))
-
-
-def clutter(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Add sun and shade, fences, twigs and things in front of people, each with some probability."""
-    if rng.random() < _LIT:
-        image = add_light(image, rng)
-    for share, hide in ((_FENCED, _fence), (_TWIGGY, _twigs), (_COVERED, _things)):
-        if rng.random() < share:
-            image = put_in_front(image, hide(image.grey.shape, rng), rng)
-    return image
-
-
-def overlay(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Add figures and black borders, each with some probability."""
-    if rng.random() < _INSCRIBED:
-        image = inscribe(image, rng)
-    if rng.random() < _BLACKED:
-        image = blacken_borders(image, rng)
-    return image
-
-
-def add_light(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Add patches of sun and shade with edges, as on sunlit ground and facades."""
-    rows, columns = image.grey.shape
-    lit = np.zeros((rows, columns), np.float32)
-    for _ in range(int(rng.integers(1, 5))):
-        corners = rng.uniform(-0.3, 1.3, (int(rng.integers(3, 6)), 2)) * (columns, rows)
-        patch = np.zeros_like(lit)
-        cv2.fillConvexPoly(patch, cv2.convexHull(corners.astype(np.int32)), 1.0)
-        lit += rng.uniform(-_MOST_LIGHT, _MOST_LIGHT) * patch
-    return replace(image, grey=_to_grey(image.grey + cv2.GaussianBlur(lit, (0, 0), rng.uniform(0.7, 6.0))))
-
-
-def put_in_front(image: ThermalImage, mask: Floats, rng: Draw) -> ThermalImage:
-    """Put something of one temperature in front of an image, where a mask (H, W) in 0..1 is not 0."""
-    level = np.quantile(image.grey[::4, ::4], rng.uniform()) + rng.normal(0.0, 20.0)
-    shown = 1.0 - cv2.GaussianBlur(mask, (0, 0), rng.uniform(0.4, 1.0))
-    grey = level + shown * (image.grey - level) + rng.normal(0.0, 1.5, mask.shape) * mask
-    visible = image.visible.copy()
-    for one, (left, top, width, height) in enumerate(image.whole.tolist()):
-        rows, columns = (
-            slice(*_span(top, height, len(mask), 0.0)),
-            slice(*_span(left, width, mask.shape[1], 0.0)),
-        )
-        visible[one] *= float(shown[rows, columns].mean()) if shown[rows, columns].size else 1.0
-    return replace(image, grey=_to_grey(grey), change=_to_grey(shown * image.change), visible=visible)
-
-
-def _fence(shape: tuple[int, ...], rng: Draw) -> Floats:
-    """Draw bars side by side, with rails."""
-    mask = np.zeros(shape, np.float32)
-    apart, top = rng.uniform(5.0, 24.0), int(rng.uniform(0.1, 0.8) * shape[0])
-    bottom, slope = top + int(rng.uniform(0.2, 0.6) * shape[0]), rng.normal(0.0, 0.15) * (rng.random() < 0.3)
-    thick = max(round(rng.uniform(0.08, 0.3) * apart), 1)
-    for u in np.arange(rng.uniform(0.0, apart), shape[1], apart).tolist():
-        cv2.line(mask, (int(u), top), (int(u + slope * (bottom - top)), bottom), 1.0, thick)
-    for v in rng.integers(top, bottom, int(rng.integers(0, 3))).tolist():
-        cv2.line(mask, (0, v), (shape[1], v), 1.0, thick)
-    return mask
-
-
-def _twigs(shape: tuple[int, ...], rng: Draw) -> Floats:
-    """Draw crooked lines in a part of the image."""
-    mask = np.zeros(shape, np.float32)
-    middle, reach = rng.uniform(0.0, 1.0, 2) * shape[::-1], rng.uniform(0.1, 0.5) * shape[1]
-    for _ in range(int(rng.integers(5, 50))):
-        steps = rng.normal(0.0, 0.12 * reach, (6, 2)) + rng.normal(0.0, 0.1 * reach, 2)
-        points = middle + rng.normal(0.0, reach / 2.0, 2) + np.cumsum(steps, axis=0)
-        cv2.polylines(
-            mask, [points.astype(np.int32)], isClosed=False, color=1.0, thickness=int(rng.integers(1, 3))
-        )
-    return mask
-
-
-def _things(shape: tuple[int, ...], rng: Draw) -> Floats:
-    """Draw poles, bushes and boxes."""
-    mask = np.zeros(shape, np.float32)
-    for _ in range(int(rng.integers(1, 5))):
-        u, v = (int(rng.integers(0, side)) for side in shape[::-1])
-        if rng.random() < 0.5:
-            width, height = int(rng.uniform(2.0, 30.0)), int(rng.uniform(10.0, shape[0]))
-            cv2.rectangle(mask, (u, v), (u + width, v + height), 1.0, -1)
-        else:
-            axes = int(rng.uniform(5.0, 40.0)), int(rng.uniform(5.0, 40.0))
-            cv2.ellipse(mask, (u, v), axes, rng.uniform(0.0, 180.0), 0.0, 360.0, 1.0, -1)
-    return mask
+    return replace(image, grey=to_grey(image.grey + level * patchy * texture))
 
 
 def soften(image: ThermalImage, rng: Draw) -> ThermalImage:
@@ -219,7 +124,7 @@ def soften(image: ThermalImage, rng: Draw) -> ThermalImage:
     curve = 255.0 * (np.arange(256.0) / 255.0) ** math.exp(rng.uniform(*_CURVES))
     soft = cv2.GaussianBlur(curve[image.grey], (0, 0), blur) + rng.normal(0.0, noise, image.grey.shape)
     change = cv2.GaussianBlur(image.change.astype(np.float64), (0, 0), blur)
-    return replace(image, grey=_to_grey(soft), change=np.rint(change).astype(np.uint8))
+    return replace(image, grey=to_grey(soft), change=np.rint(change).astype(np.uint8))
 
 
 def change_span(image: ThermalImage, rng: Draw) -> ThermalImage:
@@ -237,10 +142,11 @@ def _fade(image: ThermalImage, rng: Draw) -> ThermalImage:
     """Reduce contrast, as when one object is much hotter or colder than the rest of the image."""
     gain = rng.uniform(*_FAINT_GAINS)
     grey = 255.0 * rng.uniform(0.0, 1.0 - gain) + gain * image.grey
-    return replace(image, grey=_to_grey(grey), change=np.rint(gain * image.change).astype(np.uint8))
+    return replace(image, grey=to_grey(grey), change=np.rint(gain * image.change).astype(np.uint8))
 
 
-def _to_grey(values: NDArray[np.floating]) -> Grey:
+def to_grey(values: NDArray[np.floating]) -> Grey:
+    """Round and clip values to greys."""
     return np.asarray(np.rint(np.clip(values, 0.0, 255.0)), np.uint8)
 
 
@@ -353,111 +259,3 @@ def cut_off(image: ThermalImage, rng: Draw) -> ThermalImage:
         return take_rows(image, first, len(image.grey), _CUT_FEWEST_ROWS)
     upper, lower = (rng.uniform(*_BOTH) for _ in range(2))
     return take_rows(image, top + upper * height, top + (1.0 - lower) * height, _CUT_FEWEST_ROWS)
-
-
-# Effects of a camera's electronics and file format: gain control, edge sharpening, compression.
-
-_EQUALISED: Final = 0.25
-_MOST_EQUALISED: Final = 0.8  # share of full histogram equalisation
-_SHARPENED: Final = 0.3
-_RADII_PX: Final = (0.8, 3.0)
-_MOST_SHARPENED: Final = 1.5
-_COMPRESSED: Final = 0.4
-_QUALITIES: Final = (25, 92)
-
-
-def simulate_electronics(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Simulate, with some probability, a camera that processes its images for display."""
-    if rng.random() < _EQUALISED:
-        image = equalise(image, rng.uniform(0.0, _MOST_EQUALISED))
-    if rng.random() < _SHARPENED:
-        radius_px, gain = rng.uniform(*_RADII_PX), rng.uniform(0.0, _MOST_SHARPENED)
-        image = replace(image, grey=sharpen(image.grey, radius_px, gain))
-    if rng.random() < _COMPRESSED:
-        image = replace(image, grey=compress(image.grey, int(rng.integers(*_QUALITIES))))
-    return image
-
-
-def inscribe(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Burn figures and a cross into the image."""
-    grey, (rows, columns) = image.grey.copy(), image.grey.shape
-    level = int(rng.choice((0, 255)))
-    for _ in range(int(rng.integers(1, 5))):
-        figures = "".join(rng.choice(list("0123456789:.-C"), int(rng.integers(2, 12))))
-        corner = (
-            int(rng.integers(0, columns)),
-            int(rng.choice((rng.uniform(0.03, 0.15), rng.uniform(0.9, 1.0))) * rows),
-        )
-        cv2.putText(grey, figures, corner, int(rng.integers(0, 4)), rng.uniform(0.25, 0.8), level, 1)
-    if rng.random() < 0.3:
-        u, v, arm = columns // 2, rows // 2, int(rng.integers(4, 16))
-        cv2.line(grey, (u - arm, v), (u + arm, v), level, 1)
-        cv2.line(grey, (u, v - arm), (u, v + arm), level, 1)
-    return replace(image, grey=grey)
-
-
-def blacken_borders(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Blacken opposite borders, as of a picture that was fitted into another format."""
-    grey, change = image.grey.copy(), image.change.copy()
-    for axis in (0, 1):
-        if rng.random() < 0.6:
-            width = int(rng.uniform(0.02, 0.15) * grey.shape[axis])
-            for one in (np.moveaxis(grey, axis, 0), np.moveaxis(change, axis, 0)):
-                one[:width] = one[len(one) - width :] = 0
-    return replace(image, grey=grey, change=change)
-
-
-def equalise(image: ThermalImage, share: float) -> ThermalImage:
-    """Equalise the histogram partly, like an automatic gain control with plateau equalisation.
-
-    The image of changes is multiplied by the slope of the grey curve.
-    """
-    counts = np.bincount(image.grey.ravel(), minlength=256)
-    rank = 255.0 * np.cumsum(counts) / counts.sum()
-    curve = (1.0 - share) * np.arange(256.0) + share * rank
-    slope = cv2.GaussianBlur(np.gradient(curve)[None], (0, 0), 4.0)[0]
-    change = np.clip(image.change * slope[image.grey], 0.0, 255.0)
-    return replace(
-        image, grey=np.rint(curve).astype(np.uint8)[image.grey], change=np.rint(change).astype(np.uint8)
-    )
-
-
-def sharpen(grey: Grey, radius_px: float, gain: float) -> Grey:
-    """Sharpen details finer than a radius, which leaves rims around warm objects.
-
-    The simulated camera sharpens in kelvin, before greys are encoded; here only the greys are available.
-    """
-    values = grey.astype(np.float32)
-    finer = values - cv2.GaussianBlur(values, (0, 0), radius_px)
-    return np.asarray(np.rint(np.clip(values + gain * finer, 0.0, 255.0)), np.uint8)
-
-
-_AS_RENDERED: Final = 0.25
-_CUT: Final = 0.25
-_MOUNT_KNOWN: Final = 0.6
-
-
-class Version(NamedTuple):
-    """An image to take crops of.
-
-    Attributes:
-        image: the image.
-        mount: mount of the camera, if known.
-        rng: random generator for further draws.
-    """
-
-    image: ThermalImage
-    mount: Mount | None
-    rng: Draw
-
-
-def versions(images: Sequence[ThermalImage], rng: Draw, count: int) -> Iterator[Version]:
-    """Yield `count` augmented versions of each image; for 0, the unchanged image with its mount."""
-    for image in images:
-        if count == 0:
-            yield Version(image, image.mount, rng)
-        for _ in range(count):
-            own = np.random.default_rng(rng.integers(2**63))
-            varied = image if own.random() < _AS_RENDERED else simulate_electronics(augment(image, own), own)
-            shown = cut_off(varied, own) if own.random() < _CUT else varied
-            yield Version(shown, shown.mount if own.random() < _MOUNT_KNOWN else None, own)

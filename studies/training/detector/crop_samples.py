@@ -1,7 +1,7 @@
 """Common parts of training rescoring and box refinement: samples, augmentation of crops, and the fit."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice
@@ -16,14 +16,16 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from peopleboy.bad_input import BadInput
-from peopleboy.studies.training.detector.augmentation import Version, versions
+from peopleboy.studies.training.detector.augmentation import Draw, augment, cut_off
 from peopleboy.studies.training.detector.boosting import in_threads
-from peopleboy.studies.training.detector.world_sequences import load_images, render_task
+from peopleboy.studies.training.detector.electronics import simulate_electronics
+from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images, render_task
 from peopleboy.studies.training.detector.worlds import LATER, seeds_of
 from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights, shuffled
 from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks
 from peopleboy.studies.training.specification import Specification, report
 from peopleboy.tracker.boxes import Floats, iou
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.networks.inference import CHANNELS, Architecture, CropNetwork, CropSize
 from peopleboy.tracker.sensors.detections import Detections
 from peopleboy.tracker.sensors.thermal.detector.box_regression import OFFSETS, decode_boxes
@@ -46,6 +48,37 @@ _REPORTED: Final = 200  # batches between two progress lines
 _LAST: Final = 0.1  # first weights of the last layer, relative to He's
 _HELD_BACK: Final = 10  # one in so many worlds is held out
 _AT_ONCE: Final = 256  # crops per prediction batch
+
+
+_AS_RENDERED: Final = 0.25
+_CUT: Final = 0.25
+_MOUNT_KNOWN: Final = 0.6
+
+
+class Version(NamedTuple):
+    """An image to take crops of.
+
+    Attributes:
+        image: the image.
+        mount: mount of the camera, if known.
+        rng: random generator for further draws.
+    """
+
+    image: ThermalImage
+    mount: Mount | None
+    rng: Draw
+
+
+def versions(images: Sequence[ThermalImage], rng: Draw, count: int) -> Iterator[Version]:
+    """Yield `count` augmented versions of each image; for 0, the unchanged image with its mount."""
+    for image in images:
+        if count == 0:
+            yield Version(image, image.mount, rng)
+        for _ in range(count):
+            own = np.random.default_rng(rng.integers(2**63))
+            varied = image if own.random() < _AS_RENDERED else simulate_electronics(augment(image, own), own)
+            shown = cut_off(varied, own) if own.random() < _CUT else varied
+            yield Version(shown, shown.mount if own.random() < _MOUNT_KNOWN else None, own)
 
 
 @jax.tree_util.register_dataclass

@@ -10,13 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body import skeleton
-from peopleboy.studies.training.detector.augmentation import (
-    augment,
-    clutter,
-    cut_off,
-    overlay,
-    simulate_electronics,
-)
+from peopleboy.studies.training.detector.augmentation import augment, cut_off
+from peopleboy.studies.training.detector.clutter import clutter, overlay
+from peopleboy.studies.training.detector.electronics import simulate_electronics
 from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.sensors.thermal.detector.people_network import (

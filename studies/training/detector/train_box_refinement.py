@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.studies.training.detector.augmentation import Version
 from peopleboy.studies.training.detector.crop_samples import (
     CropData,
     CropSamples,
     CropTraining,
+    Version,
     mean_overlaps,
     predictions,
 )

@@ -9,11 +9,11 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.studies.training.detector.augmentation import Version
 from peopleboy.studies.training.detector.crop_samples import (
     CropData,
     CropSamples,
     CropTraining,
+    Version,
     mean_overlaps,
     predictions,
 )

@@ -13,16 +13,13 @@ from peopleboy.studies.reproductions.experiments.learning import (
     random_split,
     split_by_scenario,
 )
-from peopleboy.studies.training import occlusion
+from peopleboy.studies.training import occlusion, occlusion_pairs
 from peopleboy.studies.training.occlusion import (
     LEAST,
-    Episodes,
     OcclusionTraining,
-    PairSamples,
-    collect_pairs,
-    is_in_front,
     share_right,
 )
+from peopleboy.studies.training.occlusion_pairs import Episodes, PairSamples, collect_pairs, is_in_front
 from peopleboy.studies.training.specification import train
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.reproductions.contour.occlusion.learned_table import LearnedTable
@@ -148,7 +145,7 @@ def test_too_few_pairs_of_a_tracker_teach_nothing():
 
 
 def test_a_camera_that_is_tilted_up_sees_no_feet_within_11_m():
-    world = occlusion._tilted(load_scenario("crossing_pair").world(0), math.radians(16.0))
+    world = occlusion_pairs._tilted(load_scenario("crossing_pair").world(0), math.radians(16.0))
     camera = world.robot.cameras[THERMAL].camera
     sees_floor_from = camera.position_m[2] / math.tan(camera.vertical_fov_rad / 2.0 + camera.pitch_rad)
     assert 11.0 < sees_floor_from < 12.0

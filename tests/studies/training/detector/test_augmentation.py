@@ -11,22 +11,17 @@ from hypothesis import strategies as st
 
 from peopleboy.studies.training.detector import augmentation
 from peopleboy.studies.training.detector.augmentation import (
-    add_light,
     add_texture,
     augment,
-    blacken_borders,
     change_span,
     crop,
     dim_people,
-    equalise,
-    inscribe,
     mirror,
-    put_in_front,
-    sharpen,
-    simulate_electronics,
     soften,
     take_rows,
 )
+from peopleboy.studies.training.detector.clutter import add_light, blacken_borders, inscribe, put_in_front
+from peopleboy.studies.training.detector.electronics import equalise, sharpen, simulate_electronics
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.sensors.thermal.detector.window import WindowKind

@@ -6,8 +6,7 @@ import jax
 import numpy as np
 import pytest
 
-from peopleboy.studies.training.detector.augmentation import versions
-from peopleboy.studies.training.detector.crop_samples import CropSamples
+from peopleboy.studies.training.detector.crop_samples import CropSamples, versions
 from peopleboy.studies.training.detector.train_box_refinement import BoxRefinementTraining
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.boxes import iou

@@ -8,8 +8,7 @@ import jax
 import numpy as np
 import pytest
 
-from peopleboy.studies.training.detector.augmentation import versions
-from peopleboy.studies.training.detector.crop_samples import CropSamples, first_weights
+from peopleboy.studies.training.detector.crop_samples import CropSamples, first_weights, versions
 from peopleboy.studies.training.detector.train_rescoring import (
     RescoringTraining,
     with_log_odds,
