@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.footage.real_clips import RealClip
+from peopleboy.tracker.footage import false_colours
 from peopleboy.tracker.footage.image_sequences import open_footage
 
 Picture = NDArray[np.uint8]
@@ -25,8 +26,8 @@ def black_hot(picture: Picture) -> Picture:
 
 
 def ironbow(picture: Picture) -> Picture:
-    """Return false colours (H, W, 3) BGR of a picture (H, W), from black over red and yellow to white."""
-    return np.asarray(cv2.applyColorMap(picture, cv2.COLORMAP_INFERNO), np.uint8)
+    """Return false colours (H, W, 3) BGR of a picture (H, W)."""
+    return np.ascontiguousarray(false_colours.ironbow()[picture][..., ::-1])
 
 
 def letterbox(picture: Picture) -> Picture:

@@ -22,7 +22,8 @@ from peopleboy.scenarios.footage.options import (
     colour_picture,
 )
 from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
-from peopleboy.tracker.footage.grey import Polarity, Radiometry, one_channel
+from peopleboy.tracker.footage.false_colours import FalseColours
+from peopleboy.tracker.footage.grey import Polarity, Radiometry
 from peopleboy.tracker.footage.image_sequences import Footage, PictureFolder, folders_in, open_footage
 from peopleboy.tracker.footage.lens import Lens, read_lens
 from peopleboy.tracker.footage.live_footage import LiveFootage, LiveSource
@@ -362,7 +363,8 @@ class ThermalViews:
         radiometry = self._options.radiometry
         if not first or first[0].dtype != np.uint8:
             return radiometry
-        if detect_polarity([one_channel(image, []) for image in first]) is not Polarity.BLACK_HOT:
+        colours = FalseColours()
+        if detect_polarity([colours.grey(image, []) for image in first]) is not Polarity.BLACK_HOT:
             return radiometry
         self._footage.notes.append(
             "people are darker than what is around them, so dark pixels are taken as warm; if people are "

@@ -107,7 +107,6 @@ MEMORY_FRAMES: Final = 30
 NOISE_SPAN: Final = 40.0  # least span in standard deviations of the noise
 LEAST_SIDE_PX: Final = 24
 _SWAPPED: Final = 8.0  # ratio of the mean steps between neighbours from which bytes are exchanged
-_ALIKE: Final = 12  # greatest difference between channels of a grey picture, after a lossy codec
 
 
 class Polarity(StrEnum):
@@ -160,13 +159,12 @@ class Radiometry:
         """Whether degC are known."""
         return self.span_c is not None or self.scale is not None
 
-    def values(self, picture: Raw, notes: list[str]) -> NDArray[np.float32]:
+    def values(self, flat: Raw) -> NDArray[np.float32]:
         """Return the values of pixels (H, W): degC if known, else grey or counts; warmer is always larger.
 
         Raises:
             BadInput: the picture's bit depth does not match the given option.
         """
-        flat = one_channel(picture, notes)
         is_eight_bit = flat.dtype == np.uint8
         if self.span_c is not None and not is_eight_bit:
             raise BadInput(f"--temperature-range is for 8-bit pictures, got {flat.dtype}; give --scale")
@@ -202,17 +200,6 @@ def parse_scale(text: str) -> tuple[float, float]:
             f"--scale must be 'centikelvin' or GAIN,OFFSET with degC = GAIN counts + OFFSET, got {text!r}"
         ) from None
     return gain, offset
-
-
-def one_channel(picture: Raw, notes: list[str]) -> NDArray[Any]:
-    """Convert a picture (H, W) or (H, W, 3) to (H, W); false colours become their brightness."""
-    if picture.ndim == 2:
-        return picture
-    if int(np.ptp(picture[::4, ::4].astype(np.int16), axis=2).max()) > _ALIKE:
-        text = "pictures are coloured and were turned to grey; false colours need not keep warm above cold"
-        if text not in notes:
-            notes.append(text)
-    return np.asarray(cv2.cvtColor(np.ascontiguousarray(picture), cv2.COLOR_RGB2GRAY))
 
 
 def spanned(values: NDArray[np.float32], span: tuple[float, float] = ROBOT_SPAN_C) -> Grey:

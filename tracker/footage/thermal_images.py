@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration
+from peopleboy.tracker.footage.false_colours import FalseColours
 from peopleboy.tracker.footage.grey import (
     LEAST_SIDE_PX,
     Radiometry,
@@ -57,6 +58,7 @@ class ThermalImages:
         self._where = where
         self._first: Raw | None = None
         self._time_s = -np.inf
+        self._colours = FalseColours()
         self.notes: list[str] = []
 
     def frame(self, image: NDArray[Any], time_s: float, colour: NDArray[np.uint8] | None = None) -> Frame:
@@ -72,7 +74,7 @@ class ThermalImages:
         """
         is_first = self._first is None
         self._check(image, time_s)
-        values = self._radiometry.values(image, self.notes)
+        values = self._radiometry.values(self._colours.grey(image, self.notes))
         if self._mask is not None:
             values = fill_outside(values, self._mask)
         if self._lens is not None:

@@ -148,7 +148,7 @@ def test_pictures_of_eight_bits_are_taken_as_they_are_by_the_tracker_of_footage_
     grey = walker(3)
     for radiometry in (Radiometry(), Radiometry(span_c=(-7.3, 41.1))):
         to_grey = grey_maker(radiometry, is_grey=True, by_contrast=True)
-        np.testing.assert_array_equal(to_grey(radiometry.values(grey, [])), grey)
+        np.testing.assert_array_equal(to_grey(radiometry.values(grey)), grey)
 
 
 def test_four_channels_lose_the_fourth_and_say_so(tmp_path):
