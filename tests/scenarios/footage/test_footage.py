@@ -116,7 +116,7 @@ def test_the_same_seed_gives_the_same_bytes(tmp_path):
 def test_counts_in_centikelvin_become_the_grey_of_the_robots_camera(tmp_path):
     clip = write_counts(tmp_path / "clip")
     picture = next(iter(open_footage(clip)))
-    values = Radiometry(scale=parse_scale("centikelvin")).values(picture, [])
+    values = Radiometry(scale=parse_scale("centikelvin")).values(picture)
     assert sorted(np.unique(values.round(2))) == pytest.approx([20.0, 31.0], abs=0.01)
 
 
@@ -129,7 +129,7 @@ def test_sixteen_bits_without_scale_fall_back_to_the_scenes_contrast_and_say_so(
 def test_black_hot_footage_turned_round_is_the_same_as_white_hot():
     grey, inverted = walker(3), 255 - walker(3)
     np.testing.assert_array_equal(
-        Radiometry().values(grey, []), Radiometry(polarity=Polarity.BLACK_HOT).values(inverted, [])
+        Radiometry().values(grey), Radiometry(polarity=Polarity.BLACK_HOT).values(inverted)
     )
 
 

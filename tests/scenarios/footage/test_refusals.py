@@ -22,7 +22,7 @@ def test_temperatures_of_no_place_with_people_are_refused_with_the_scale_that_fi
 def test_a_temperature_range_in_kelvin_is_refused():
     given = Radiometry(span_c=(297.0, 309.0))
     with refused("--temperature-range 297 309", "kelvin", "degC"):
-        check_plausible(given, given.values(np.arange(256, dtype=np.uint8).reshape(16, 16), []))
+        check_plausible(given, given.values(np.arange(256, dtype=np.uint8).reshape(16, 16)))
 
 
 @pytest.mark.parametrize(("per_k", "scale"), [(10, "0.1,-273.15"), (1, "1,-273.15"), (25, "0.04,-273.15")])
@@ -30,18 +30,18 @@ def test_other_counts_of_kelvin_are_recognised(per_k, scale):
     counts = np.full((30, 40), round(295 * per_k), np.uint16)
     given = Radiometry(scale=(2.0, 0.0))
     with refused(f"--scale {scale}"):
-        check_plausible(given, given.values(counts, []))
+        check_plausible(given, given.values(counts))
 
 
 def test_dead_pixels_an_empty_border_and_unknown_units_are_plausible():
     counts = np.full((30, 40), 29500, np.uint16)
     counts[:, :10], counts[3, 20:25] = 0, 65535
     given = Radiometry(scale=CENTIKELVIN)
-    check_plausible(given, given.values(counts, []))
+    check_plausible(given, given.values(counts))
     check_plausible(Radiometry(), np.full((30, 40), 30000.0, np.float32))
     counts[:20] = 0
     with refused("--scale"):  # once there are more dead pixels than others
-        check_plausible(given, given.values(counts, []))
+        check_plausible(given, given.values(counts))
 
 
 @pytest.mark.parametrize(
