@@ -36,16 +36,12 @@ SEED: Final = 1
 
 def show_rooms() -> None:
     """Print metrics of the default tracker in both rooms."""
-    with tempfile.TemporaryDirectory() as folder:
-        _show_rooms(Path(folder))
-
-
-def _show_rooms(folder: Path) -> None:
     shown = ("CP", "CR", "AA", "IDF1", "HOTA")
     rows = []
-    for room, temperatures in ROOMS.items():
-        scores = combine(list(_scores_of(temperatures, folder / room.replace(" ", "-"))))
-        rows.append([room, *percents(scores, *shown), str(scores.counts.false_tracks)])
+    with tempfile.TemporaryDirectory() as folder:
+        for room, temperatures in ROOMS.items():
+            scores = combine(list(_scores_of(temperatures, Path(folder) / room.replace(" ", "-"))))
+            rows.append([room, *percents(scores, *shown), str(scores.counts.false_tracks)])
     print_table(["scenes in", *shown, "false tracks"], rows)
 
 
