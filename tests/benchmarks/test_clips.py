@@ -15,6 +15,7 @@ from benchmarks.footage.real_clips import ClipResult, open_clips, score_clip
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
+from peopleboy.tracker.footage.false_colours import FalseColours
 from peopleboy.tracker.footage.image_sequences import open_footage
 from tests.helpers.calls.refused import assert_names, refused
 
@@ -153,7 +154,7 @@ def test_truth_moves_with_altered_pictures(name: str, tmp_path: Path) -> None:
     assert len(pictures) == altered.frames == (FRAMES // 2 if name == "half rate" else FRAMES)
     walker = altered.given.truth.take(altered.given.truth.id == 1)
     assert walker.frame.tolist() == list(range(1, altered.frames + 1))
-    grey = np.asarray(pictures[0] if pictures[0].ndim == 2 else pictures[0].max(axis=2), float)
+    grey = FalseColours().grey(pictures[0], [])
     left, top, width, height = np.round(walker.box[0]).astype(int)
     inside = np.median(grey[top : top + height, left + 8 : left + width - 8])
     around = np.median(grey[grey.shape[0] // 4 : -grey.shape[0] // 4, :20])
