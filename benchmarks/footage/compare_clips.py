@@ -127,7 +127,9 @@ def compare_clips(
         print_table(["change of HOTA", *alterations], rows_of(changes, dict.fromkeys(alterations, "{:+.1f}")))
     click.echo(f"\n{_split({clip.name: clip for clip in given})}")
     runs = {key: len(results) for key, results in found.items()}
-    _keep(clips, metrics, runs, {tracker: {"changes": of_all} for tracker, of_all in changes.items()})
+    _write_metrics(
+        clips, metrics, runs, {tracker: {"changes": of_all} for tracker, of_all in changes.items()}
+    )
 
 
 def change_of_hota(
@@ -161,7 +163,7 @@ def _print_clips(
         print_row(name, (str(clips[name].frames), tracker, *cells))
 
 
-def _keep(
+def _write_metrics(
     clips: Mapping[str, RealClip],
     metrics: Mapping[tuple[str, str], Mapping[str, float]],
     runs: Mapping[tuple[str, str], int],

@@ -34,7 +34,7 @@ from peopleboy.tracker.footage.thermal_images import ThermalImages, check_image,
 from peopleboy.tracker.footage.time_stamps import read_time_stamps, time_stamps
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.sensors.depth.depth_view import DepthView
-from peopleboy.tracker.sensors.depth.v_disparity import pose_above_floor
+from peopleboy.tracker.sensors.depth.v_disparity import estimate_camera_pose
 from peopleboy.tracker.trackers import uses_contrast
 
 POSE_IMAGES: Final = 10
@@ -87,7 +87,7 @@ class RgbdViews:
             return camera
         paths = self._pairs.depth[:: max(len(self._pairs.depth) // POSE_IMAGES, 1)][:POSE_IMAGES]
         depths = (self._counts(picture) for picture in read_row(paths, []))
-        pose = pose_above_floor(depths, DepthView.of(camera.calibration(*size), DEPTH))
+        pose = estimate_camera_pose(depths, DepthView.of(camera.calibration(*size), DEPTH))
         if pose is None:
             self.notes.append(
                 f"camera: no floor was found in the depth images; it is assumed to be "

@@ -161,8 +161,8 @@ def test_a_pose_that_is_not_given_is_that_of_the_floor(tmp_path: Path) -> None:
     assert given == 1.5
     for path in depth.iterdir():
         write_counts(path, np.full((240, 320), 2000.0))
-    told = call(colour, *options(depth), "--overwrite").stderr
-    assert_names(told, "note: camera: no floor", "1.2 m", "--camera-height-m")
+    message = call(colour, *options(depth), "--overwrite").stderr
+    assert_names(message, "note: camera: no floor", "1.2 m", "--camera-height-m")
 
 
 def test_pictures_named_by_seconds_go_together_by_time_and_tell_it(tmp_path: Path) -> None:
@@ -174,8 +174,8 @@ def test_pictures_named_by_seconds_go_together_by_time_and_tell_it(tmp_path: Pat
         np.testing.assert_array_equal(frame.depth(DEPTH), depth_mm(k))
     assert_names(refused_call(colour, depth, "--rate-hz", 10), "--rate-hz", "times")
     (depth / "7.33.png").rename(depth / "7.36.png")
-    told = call(colour, *options(depth), *POSE).stderr
-    assert_names(told, "note: ", colour / "7.30.png", "1 of 4 pictures")
+    message = call(colour, *options(depth), *POSE).stderr
+    assert_names(message, "note: ", colour / "7.30.png", "1 of 4 pictures")
     for name in ("7.12", "7.19"):
         (depth / f"{name}.png").unlink()
     assert_names(refused_call(colour, depth), "0.050 s", "3 of 4 pictures")

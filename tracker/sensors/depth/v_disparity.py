@@ -65,7 +65,7 @@ def find_floor(counts: Counts, view: DepthView, shift_px: float = _SHIFT_PX) -> 
     return _strongest(counts, view, *_FLOOR_M, shift_px)
 
 
-def pose_above_floor(depths: Iterable[Depth], view: DepthView) -> tuple[float, float] | None:
+def estimate_camera_pose(depths: Iterable[Depth], view: DepthView) -> tuple[float, float] | None:
     """Return height above the floor [m] and pitch [rad] of a camera, positive down, from its depth images.
 
     The medians over the images in which a floor is found; None if it is in fewer than half of them.
@@ -74,7 +74,7 @@ def pose_above_floor(depths: Iterable[Depth], view: DepthView) -> tuple[float, f
     fitted = []
     for depth in depths:
         line = find_floor(v_disparity(depth, view), view, widest_px)
-        fitted.append(None if line is None else _fitted(line, depth, view))
+        fitted.append(None if line is None else _fit_line(line, depth, view))
     floors = [one for one in fitted if one is not None]
     if not floors or 2 * len(floors) < len(fitted):
         return None
@@ -82,7 +82,7 @@ def pose_above_floor(depths: Iterable[Depth], view: DepthView) -> tuple[float, f
     return offset_m / math.hypot(1.0, slope), -math.atan(slope)
 
 
-def _fitted(line: HeightLine, depth: Depth, view: DepthView) -> HeightLine | None:
+def _fit_line(line: HeightLine, depth: Depth, view: DepthView) -> HeightLine | None:
     """Fit a line to the readings of a depth image near it, by least squares; None if it is of a wall.
 
     A vote is too coarse if the floor is only seen far away.

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from peopleboy.tracker.sensors.depth.v_disparity import (
     BIN_PX,
+    estimate_camera_pose,
     find_ceiling,
     find_floor,
-    pose_above_floor,
     v_disparity,
 )
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
@@ -36,14 +36,14 @@ def test_pose_is_that_of_the_plane_below_the_camera(height_m: float, pitch_deg: 
     z_m = np.where(down > height_m / 8.0, height_m / np.maximum(down, 1e-3), 8.0)
     noise_m = np.random.default_rng(1).normal(0.0, 0.003, (3, HEIGHT, WIDTH)) * z_m[:, None] ** 2
     depths = np.rint(1000.0 * (z_m[:, None] + noise_m)).astype(np.uint16)
-    assert pose_above_floor(depths, view) == pytest.approx((height_m, pitch_rad), abs=0.03)
+    assert estimate_camera_pose(depths, view) == pytest.approx((height_m, pitch_rad), abs=0.03)
 
 
 def test_without_a_floor_in_half_of_the_images_there_is_no_pose() -> None:
     view, wall = make_view(), np.full((HEIGHT, WIDTH), 2500, np.uint16)
-    assert pose_above_floor([], view) is None
-    assert pose_above_floor([wall, wall, depth_of()], view) is None
-    assert pose_above_floor([wall, depth_of()], view) == pytest.approx((1.2, 0.0), abs=0.02)
+    assert estimate_camera_pose([], view) is None
+    assert estimate_camera_pose([wall, wall, depth_of()], view) is None
+    assert estimate_camera_pose([wall, depth_of()], view) == pytest.approx((1.2, 0.0), abs=0.02)
 
 
 def test_ceiling_is_found_above_the_camera() -> None:
