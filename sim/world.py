@@ -295,7 +295,7 @@ class SimulatedWorld:
         ]
         number = {key.name: part for part, key in enumerate(keys)}
         skins = [
-            (person.skin, [number[f"{person.name}/{part.name}"] for part in person.parts])
+            (person.skin, [number[key] for key in person.part_keys])
             for person in self.crowd.people
             if person.skin is not None
         ]

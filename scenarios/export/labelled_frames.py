@@ -141,11 +141,12 @@ def _content(folder: Path, frame: int, images: str) -> bytes:
 
 
 def attributes_of(run: FinishedRun) -> dict[str, dict[str, Any]]:
-    """Return the constant attributes of each person of a run by name: sex, age, build, clothes, items."""
+    """Return the constant attributes of each person of a run by name: body, gait, items and clothes."""
     found: dict[str, dict[str, Any]] = {}
     for person in run.world.people:
         clothes = {name: worn for name, worn in asdict(person.clothes).items() if worn is not None}
-        about = {"sex": person.sex, "age": person.age, "build": person.build, "height_m": person.height_m}
+        same = ("sex", "age", "build", "height_m", "gait", "arms", "bag", "equipment")
+        about = {name: getattr(person, name) for name in same}
         found[person.name] = about | clothes
         if run.world.detail == "full":
             outfit, _ = draw_bearing(person, appearance_stream(run.about.seed, person.name))

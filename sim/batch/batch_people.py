@@ -11,7 +11,7 @@ from peopleboy.sim.batch.drive import BatchWalks, JoinedWorlds
 from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.body.body_placement import carry, put_on_floor
 from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
-from peopleboy.sim.people.person import Person, pace_m_s
+from peopleboy.sim.people.person import pace_m_s
 from peopleboy.sim.people.walking.script import Records, join_records
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.solid_shapes import Array
@@ -98,19 +98,19 @@ class BatchLimbs:
             part_offset=np.concatenate([frame.part_offset for frame in frames]),
             body=np.array(
                 [
-                    first + _number_of(world, person, part.name)
+                    first + _number_of(world, key)
                     for world, first in zip(worlds, self._joined.first_body.tolist(), strict=False)
                     for person in world.crowd.people
-                    for part in person.parts
+                    for key in person.part_keys
                 ],
                 np.int64,
             ),
         )
 
 
-def _number_of(world: SimulatedWorld, person: Person, part: str) -> int:
+def _number_of(world: SimulatedWorld, key: str) -> int:
     assert isinstance(world.physics, Kinematic)
-    return world.physics.numbers[f"{person.name}/{part}"]
+    return world.physics.numbers[key]
 
 
 @njit(cache=True, nogil=True)
@@ -140,7 +140,8 @@ def _move(
 def _place(
     who: Numbers, places: Array, people: Builds, stances: Stances, parts: Parts, joined: JoinedWorlds
 ) -> None:
-    bones, turns = np.empty((parts.offsets.shape[1], 4, 4)), np.empty((parts.offsets.shape[1], 3))
+    count = parts.offsets.shape[1]
+    bones, turns = np.empty((count + 1, 4, 4)), np.empty((count, 3))
     bodies = joined.bodies
     for k in range(len(who)):
         q, place = who[k], (places[k, 0], places[k, 1], places[k, 2])

@@ -75,10 +75,6 @@ class Crowd:
         self._is_shown = dict.fromkeys((person.name for person in self.people), True)
         self._solid: set[str] = set()
         self._before: dict[str, NDArray[np.float64]] = {}
-        self._part_names = {
-            person.name: tuple(f"{person.name}/{part.name}" for part in person.parts)
-            for person in self.people
-        }
         for person in self.people:
             self._add(person)
 
@@ -158,7 +154,7 @@ class Crowd:
             self._place_solid(person, person.position)
             self._make_solid(person, gap_to_robot)
         if self._is_visible and present:
-            names = [name for person in present for name in self._part_names[person.name]]
+            names = [key for person in present for key in person.part_keys]
             poses = np.concatenate([person.poses() for person in present])
             self._physics.set_poses(names, poses[:, :3, 3], quaternions(poses))
 
@@ -170,7 +166,7 @@ class Crowd:
             rng = stream(seed, f"{name}.body")
             body = choose_body(config.age, config.sex, config.build, bare_m, rng)
         finisher = self._finisher(config, seed) if self._is_fine else None
-        return Person(config, stream(seed, name), finisher, body)
+        return Person(config, stream(seed, name), finisher, body, air_of(self._place))
 
     def _finisher(self, config: PersonConfig, seed: int) -> Finisher:
         """Return the finisher of a person, for the air of the place."""
@@ -178,10 +174,9 @@ class Crowd:
         return Finisher(config, air_of(self._place), rng, is_outdoors=is_outdoors(self._place))
 
     def _add(self, person: Person) -> None:
-        for part in self._visible_parts(person):
-            name = f"{person.name}/{part.name}"
-            self._physics.add_part(name, part.shapes, solid=False)
-            self.materials[name] = part.material
+        for key, part in self._visible_parts(person):
+            self._physics.add_part(key, part.shapes, solid=False)
+            self.materials[key] = part.material
         radius, height = person.radius_m, person.config.height_m
         capsule = Shape(kind=ShapeKind.CAPSULE, size=(height - 2.0 * radius, radius, 0.0))
         self._physics.add_part(f"{person.name}/{_SOLID}", [capsule], visible=False)
@@ -190,8 +185,8 @@ class Crowd:
 
     def _set_shown(self, person: Person, is_shown: bool) -> None:
         self._is_shown[person.name] = is_shown
-        for part in self._visible_parts(person):
-            self._physics.set_hidden(f"{person.name}/{part.name}", not is_shown)
+        for key, _ in self._visible_parts(person):
+            self._physics.set_hidden(key, not is_shown)
         if not is_shown:
             self._solid.discard(person.name)
             self._physics.set_hidden(f"{person.name}/{_SOLID}", True)
@@ -202,8 +197,8 @@ class Crowd:
             self._solid.add(person.name)
             self._physics.set_hidden(f"{person.name}/{_SOLID}", False)
 
-    def _visible_parts(self, person: Person) -> tuple[Part, ...]:
-        return person.parts if self._is_visible else ()
+    def _visible_parts(self, person: Person) -> list[tuple[str, Part]]:
+        return list(zip(person.part_keys, person.parts, strict=True)) if self._is_visible else []
 
     def _place_solid(self, person: Person, position: NDArray[np.float64]) -> None:
         at = (float(position[0]), float(position[1]), person.config.height_m / 2.0)

@@ -1,8 +1,9 @@
 """Walking people: their parts, their movement, and the poses of their parts."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,14 +24,16 @@ from peopleboy.sim.people.body.body_shapes import ARM_PARTS as _LIMBS
 from peopleboy.sim.people.body.body_shapes import (
     BAG_PART,
     BODY_PARTS,
+    FRAME_INDEX,
     bag,
     bone_index,
     build_body,
     support_points,
 )
-from peopleboy.sim.people.body.clothes import dress
-from peopleboy.sim.people.body.gait import Gait
-from peopleboy.sim.people.body.manner import USUAL, held_arms
+from peopleboy.sim.people.body.clothes import ROOM_C, dress
+from peopleboy.sim.people.body.gait import Gait, walking_gait
+from peopleboy.sim.people.body.gait_styles import GAIT_STYLES
+from peopleboy.sim.people.body.manner import USUAL, Hold, Manner, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
 from peopleboy.sim.people.body.skeleton import (
     BONE_INDEX,
@@ -44,22 +47,30 @@ from peopleboy.sim.people.body.skeleton import (
 from peopleboy.sim.people.body.skin import BodyPlan, dress_body
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
 from peopleboy.sim.people.conducts import ConductSituation, Mind
+from peopleboy.sim.people.equipment import EQUIPMENT_HOLDS, RIDDEN, find_grip, make_equipment
 from peopleboy.sim.people.person_config import Arms, PersonConfig
+from peopleboy.sim.people.riding import riding_gait, riding_supports
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.walker import AS_PLANNED, Present, Surroundings, Walker, Wish
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part
 
 Array = NDArray[np.float64]
+Shift = tuple[float, float, float]
 
 ARM_PARTS = (*_LIMBS, BAG_PART)
 PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, BAG_PART), start=1)}
 
-_ARM_POSTURES: dict[Arms, Posture | None] = {
-    "swinging": None,
+_ARM_POSTURES: Final[Mapping[Arms, Posture]] = {
     "crossed": Posture.ARMS_CROSSED,
     "raised": Posture.ARMS_RAISED,
 }
+_ARM_HOLDS: Final[Mapping[Arms, tuple[Hold, Hold]]] = {
+    "in_pockets": ("pocket", "pocket"),
+    "telephone": ("telephone", "free"),
+    "phone_in_hand": ("phone_in_hand", "free"),
+}
+_BOW_TO_PHONE_RAD = math.radians(24.0)
 _BAG_LOOK = Material(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
 _BAG_HAND = "right"
 _ARM = ("upper_arm", "forearm", "hand")
@@ -86,7 +97,8 @@ class Person:
     Attributes:
         config: the settings.
         name: the configured name.
-        parts: its parts, which never change; `poses` is in their order.
+        parts: its parts and those of its equipment, which never change; `poses` is in their order.
+        part_keys: the names of the parts in the world, each with its owner: the person or the equipment.
         skin: the mesh that bends with the parts, or None for a person of capsules.
         stance: (1,) records STANCE, its current stance.
         walker: its movement over the floor.
@@ -99,23 +111,33 @@ class Person:
         rng: np.random.Generator,
         finisher: Finisher | None = None,
         body: RestBody | None = None,
+        air_c: float = ROOM_C,
     ) -> None:
         self.config = config
         self.name = config.name
         self._size = measure(config.height_m, config.sex, config.build)
         outfit = NOTHING_MORE if finisher is None else finisher.outfit
         plan = _plan(config, self._size, outfit, body)
-        self.skin, geometry = plan.skin, plan.geometry
+        self.skin = plan.skin
         materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
         if finisher is not None:
-            materials = finisher.finish(materials, geometry, plan.head_m)
-        self.parts = tuple(Part(name=n, shapes=g.shapes, material=materials[n]) for n, g in geometry.items())
+            materials = finisher.finish(materials, plan.geometry, plan.head_m)
+        parts = [Part(name=n, shapes=g.shapes, material=materials[n]) for n, g in plan.geometry.items()]
+        self._joint_bone, self._joint_offset = plan.joint_bone, plan.joint_offset
+        self._offsets, self._arm_m = plan.offsets, plan.arm_m
+        self._manner = _manner_of(config, USUAL if finisher is None else finisher.manner)
+        self.gait, self._supports = self._make_gait(plan.supports)
+        grip = find_grip(self._manner, self._offsets, self._supports, self._arm_m, config.height_m)
+        things = make_equipment(config.equipment, grip, air_c, rng)
+        geometry = plan.geometry | {thing.name: thing.geometry for thing in things}
+        parts += [Part(name=t.name, shapes=t.geometry.shapes, material=t.material) for t in things]
+        self.parts = tuple(parts)
+        self.part_keys = (
+            *(f"{config.name}/{name}" for name in plan.geometry),
+            *(f"{config.name}.{config.equipment}/{thing.name}" for thing in things),
+        )
         self._part_bone = bone_index(geometry)
         self._part_offset = np.array([g.offset_m for g in geometry.values()])
-        self._joint_bone, self._joint_offset = plan.joint_bone, plan.joint_offset
-        self._offsets, self._supports, self._arm_m = plan.offsets, plan.supports, plan.arm_m
-        self._manner = USUAL if finisher is None else finisher.manner
-        self.gait = Gait(self._offsets, self._supports[:3], config.height_m, self._manner)
         leave_s = math.inf if config.leave_s is None else config.leave_s
         self.walker = Walker(config.path, config.yields, self.radius_m, (config.enter_s, leave_s))
         self._mind = Mind([waypoint.at_m for waypoint in config.path], config.reacts, config.leads)
@@ -280,9 +302,17 @@ class Person:
         self.stance, self._build = stance, builds
         self.gait.rebind(builds.rotations[0], builds.sway[0])
 
+    def _make_gait(self, supports: Array) -> tuple[Gait, Array]:
+        """Return the gait, and the points that the body rests on."""
+        kind, stature_m = self.config.equipment, self.config.height_m
+        if kind not in RIDDEN:
+            return walking_gait(self._offsets, supports[:3], stature_m, self._manner), supports
+        gait = riding_gait(kind, self._offsets, self._arm_m, -float(supports[0, 2]), stature_m)
+        return gait, riding_supports(kind, stature_m)
+
     def _know_build(self) -> Builds:
         held, is_held = held_arms(self._manner.holds)
-        (rotations, sway), arms = self.gait.tables, _ARM_POSTURES[self.config.arms]
+        (rotations, sway), arms = self.gait.tables, _ARM_POSTURES.get(self.config.arms)
         return Builds(
             rotations=rotations[None],
             sway=sway[None],
@@ -308,7 +338,7 @@ class Person:
         return points
 
     def _world_bones(self) -> Array:
-        """(17, 4, 4) world from bone."""
+        """(18, 4, 4) world from bone, and from the floor frame under the person."""
         if self._bones is None or self._bones_s != self.walker.now_s:
             self._bones, self._bones_s = self._place(), self.walker.now_s
         return self._bones
@@ -320,21 +350,19 @@ class Person:
             rotations, shift = self._reach(self._grasp, rotations, shift)
         return self._on_the_floor(rotations, shift)
 
-    def _on_the_floor(self, rotations: Array, shift: tuple[float, float]) -> Array:
-        bones = np.empty((len(BONES), 4, 4))
+    def _on_the_floor(self, rotations: Array, shift: Shift) -> Array:
+        bones = np.empty((len(FRAME_INDEX), 4, 4))
         x, y = self.walker.position.tolist()
         put_on_floor(rotations, self._offsets, self._supports, shift, (x, y, self.walker.heading), bones)
         return bones
 
-    def _reach(
-        self, grasp: _Grasp, rotations: Array, shift: tuple[float, float]
-    ) -> tuple[Array, tuple[float, float]]:
+    def _reach(self, grasp: _Grasp, rotations: Array, shift: Shift) -> tuple[Array, Shift]:
         """Stoop as far as the arm is too short, and turn the arm."""
         shoulder, chest = BONE_INDEX[f"{grasp.side}_upper_arm"], BONE_INDEX["chest"]
 
-        def bent(share: float) -> tuple[Array, tuple[float, float]]:
+        def bent(share: float) -> tuple[Array, Shift]:
             turns, front = stoop(share)
-            return rotations + turns, (shift[0] + front * self.config.height_m, shift[1])
+            return rotations + turns, (shift[0] + front * self.config.height_m, *shift[1:])
 
         def gap_m(share: float) -> float:
             return float(np.linalg.norm(self._on_the_floor(*bent(share))[shoulder, :3, 3] - grasp.point))
@@ -351,11 +379,29 @@ class Person:
         bowed[arm] += grasp.share * (turned - bowed)[arm]
         return bowed, shift
 
-    def _pose(self) -> tuple[Array, tuple[float, float]]:
-        """Return (17, 3) [rad] rotation vectors and the pelvis' offset [m] to the front and to the left."""
+    def _pose(self) -> tuple[Array, Shift]:
+        """Return (17, 3) [rad] rotation vectors and the shift of the body as returned by `hold`."""
         rotations = np.empty((len(BONES), 3))
-        shift: tuple[float, float] = hold(self.build, self.stance, 0, rotations)
+        shift: Shift = hold(self.build, self.stance, 0, rotations)
         return rotations, shift
+
+
+def _manner_of(config: PersonConfig, own: Manner) -> Manner:
+    """Change a person's own manner by the configured gait, arms and equipment."""
+    manner = GAIT_STYLES[config.gait].applied_to(own)
+    if config.equipment != "nothing":
+        hold: Hold = EQUIPMENT_HOLDS.get(config.equipment, "free")
+        return replace(manner, holds=(hold, hold))
+    if config.arms in _ARM_HOLDS:
+        left, right = (
+            kept if kept == "carries" else new
+            for kept, new in zip(own.holds, _ARM_HOLDS[config.arms], strict=True)
+        )
+        manner = replace(manner, holds=(left, right))
+    if config.arms == "phone_in_hand":
+        bow, _ = manner.head_rad
+        manner = replace(manner, head_rad=(bow + _BOW_TO_PHONE_RAD, 0.0))
+    return manner
 
 
 def pace_m_s(velocity: Sequence[float], turn_rad_s: float) -> float:

@@ -13,7 +13,9 @@ from peopleboy.settings import Name, Point, Seconds, check_limits, word_or_list
 from peopleboy.sim.people.body.anthropometry import Build, Sex
 from peopleboy.sim.people.body.bodies import Age
 from peopleboy.sim.people.body.clothes import Clothes
+from peopleboy.sim.people.body.gait_styles import GaitName
 from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.equipment import RIDDEN, Equipment
 
 Way = Literal["ignores", "makes_way", "curious", "wary", "blocks", "surprised"]
 Meeting = Annotated[float, Field(ge=0.8, le=20.0)]
@@ -152,11 +154,12 @@ class Lead:
 
 
 BodyShape = Literal["capsules", "skins"]
-Arms = Literal["swinging", "crossed", "raised"]
+Arms = Literal["swinging", "crossed", "raised", "in_pockets", "telephone", "phone_in_hand"]
 PostureName = Literal[*Posture]  # type: ignore[valid-type]
 Face = Annotated[Annotated[Name, Tag("word")] | Annotated[Point, Tag("list")], Discriminator(word_or_list)]
 
 SPEEDS_M_S: Final = (0.1, 2.5)
+_WITH_EQUIPMENT: Final = (Posture.STANDING, Posture.CALLING)
 _SAME_POINT_M: Final = 0.01
 
 
@@ -266,7 +269,31 @@ class ActorConfig(WalkConfig):
 
     name: Annotated[Name, Field(description="name of the person, unique in the scenario")]
     bag: Annotated[bool, Field(description="whether the person carries a bag")] = False
-    arms: Annotated[Arms, Field(description="position of the arms while walking")] = "swinging"
+    gait: Annotated[
+        GaitName,
+        Field(
+            description="style of walking. `strolling` has short steps and little arm swing; `brisk` has "
+            "long steps and bent elbows; `old` is stooped, with short steps and feet apart; `heavy` has wide "
+            "steps and swaying hips; `shuffling` has very short steps, feet near the floor, and bent trunk, "
+            "knees and elbows; `running` is running from 1.6 m/s on, and walking up to 1.1 m/s"
+        ),
+    ] = "usual"
+    arms: Annotated[
+        Arms,
+        Field(
+            description="position of the arms while walking; `telephone` has the left hand at the ear, "
+            "`phone_in_hand` has it before the chest, and the person looks at it"
+        ),
+    ] = "swinging"
+    equipment: Annotated[
+        Equipment,
+        Field(
+            description="what the person carries with both arms (`box`), pushes (`walking_frame`, `trolley`, "
+            "`pushchair`) or rides (`wheelchair`, `bicycle`). It is an object of its own in the ground "
+            "truth, named by the person, a dot and its kind, as `ida.trolley`. Cameras see it; contacts and "
+            "sonars do not"
+        ),
+    ] = "nothing"
     leads: Annotated[
         Lead | None,
         Field(description="how the person leads the robot along the path; by default, the person does not"),
@@ -280,6 +307,25 @@ class ActorConfig(WalkConfig):
                 "a person who leads the robot cannot also react to it; leave out reacts or leads",
                 key=("leads",),
             )
+        if self.equipment != "nothing":
+            self._check_equipment()
+
+    def _check_equipment(self) -> None:
+        """Refuse what a person with both hands on a thing, or on a seat, cannot do."""
+        takes = f"a person with the equipment {self.equipment!r}"
+        if self.bag:
+            raise BadInput(f"{takes} has no hand for a bag; leave out bag or equipment", key=("bag",))
+        if self.arms != "swinging":
+            raise BadInput(f"{takes} holds it with both hands; leave out arms", key=("arms",))
+        if self.equipment in RIDDEN and self.gait != "usual":
+            raise BadInput(f"{takes} does not walk; leave out gait", key=("gait",))
+        for index, waypoint in enumerate(self.path):
+            if waypoint.posture not in _WITH_EQUIPMENT:
+                raise BadInput(
+                    f"{waypoint.posture.value!r} is not possible for {takes}; must be one of "
+                    f"{', '.join(_WITH_EQUIPMENT)}",
+                    key=("path", index, "posture"),
+                )
 
 
 @dataclass(frozen=True, kw_only=True)

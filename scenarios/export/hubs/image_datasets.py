@@ -33,6 +33,7 @@ _TRAIN: Final = "train"  # where runs without splits are, as loaders expect that
 _IMAGES_PER_SHARD: Final = 1000
 _IMAGES_PER_GROUP: Final = 100
 _LABELS: Final = ("area", "track_id", "distance_m", "visible_fraction", "occluded_fraction")
+_TEXTS: Final = ("name", "posture", "sex", "age", "gait", "equipment")
 
 
 def write_webdataset(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str = "thermal") -> None:
@@ -125,7 +126,7 @@ def _features() -> Any:
     datasets = need("datasets", "--format huggingface")
     value, lists = datasets.Value, datasets.List
     numbers = {name: lists(value("float64")) for name in _LABELS}
-    texts = {name: lists(value("string")) for name in ("name", "posture", "sex", "age")}
+    texts = {name: lists(value("string")) for name in _TEXTS}
     return datasets.Features(
         {
             "image": datasets.Image(),
@@ -150,7 +151,7 @@ def _features() -> Any:
 def _row(sample: Mapping[str, Any]) -> dict[str, Any]:
     image, labels = sample["image"], sample["annotations"]
     flat = [label | label["attributes"] for label in labels]
-    same = ("bbox", "whole_bbox", "keypoints", *_LABELS, "name", "posture", "sex", "age")
+    same = ("bbox", "whole_bbox", "keypoints", *_LABELS, *_TEXTS)
     return {
         "image": {"bytes": sample["png"], "path": f"{sample['key']}.png"},
         "mask": {"bytes": sample["mask.png"], "path": f"{sample['key']}.mask.png"},

@@ -12,7 +12,7 @@ from peopleboy.sim.people.appearance.faces import paint_face, paint_hair, paint_
 from peopleboy.sim.people.appearance.textures import Mesh, crumple, make_mesh
 from peopleboy.sim.people.appearance.traits import draw_traits
 from peopleboy.sim.people.body.body_shapes import BAG_PART, PartGeometry
-from peopleboy.sim.people.body.clothes import Garment
+from peopleboy.sim.people.body.clothes import ROOM_C, Garment
 from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.outfit import Outfit, draw_outfit
 from peopleboy.sim.people.person_config import PersonConfig
@@ -26,7 +26,6 @@ from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 # of the cloth (ISO 7730:2005, clause 4.1, solved for the surface). The catalogue gives T in air of 21
 # degC, which gives each garment's r; in air of 21 degC all temperatures are those of the catalogue.
 
-ROOM_C = 21.0  # [degC] air for which the catalogue's temperatures hold
 WARMEST_SKIN_C = 36.8
 _COVERED_SKIN_C = 33.4  # skin under clothes, in air of 21 degC
 _BY_RADIATION, _IN_A_ROOM = 4.5, 8.5  # [W / (m2 K)] h by radiation, and in all; the rest is convection
@@ -223,7 +222,7 @@ def appearance_stream(seed: int, name: str) -> np.random.Generator:
 
 def draw_bearing(config: PersonConfig, rng: np.random.Generator) -> tuple[Outfit, Manner]:
     """Draw a person's outfit and manner, before anything else of its appearance."""
-    outfit = draw_outfit(rng, config.clothes, config.sex, config.bag)
+    outfit = draw_outfit(rng, config.clothes, config.sex, config.bag or config.equipment != "nothing")
     carries = _hand_that_carries(config, outfit)
     return outfit, draw_manner(rng, carries, has_straps=_has_straps(outfit))
 

@@ -33,7 +33,7 @@ class BodyFrame(NamedTuple):
     Attributes:
         offsets: (17, 3) [m] from joint to joint.
         supports: (12, 3) [m] points that the body may rest on, in the order of `SUPPORTS`.
-        bone: (P,) index of the bone that carries each part.
+        bone: (P,) index in `FRAME_INDEX` of the frame that carries each part.
         part_offset: (P, 3) [m] from that bone's joint to the part's frame.
     """
 
@@ -51,19 +51,19 @@ def put_on_floor(
     turns: Array,
     offsets: Array,
     supports: Array,
-    shift: tuple[float, float],
+    shift: tuple[float, float, float],
     place: tuple[float, float, float],
     bones: Array,
 ) -> None:
-    """Place bones so that the lowest point of the body is on the floor: of a sole, unless the person lies.
+    """Place bones so that the lowest point of the body, usually of a sole, is on the floor or above it.
 
     Args:
         turns: (17, 3) [rad] rotation vector of each bone against its parent.
         offsets: (17, 3) [m] joint offsets as returned by `joint_offsets`.
         supports: (12, 3) [m] as in `BodyFrame`.
-        shift: [m] offset of the pelvis to the front and to the left.
+        shift: [m] offset of the pelvis to the front and to the left, and the height of the lowest point.
         place: x, y [m] and heading [rad] of the person.
-        bones: (17, 4, 4) output: the poses in the world frame.
+        bones: (18, 4, 4) output: the poses in the world frame, and that of the floor under the person.
     """
     own, world = offsets.copy(), np.eye(4)
     own[0, 0], own[0, 1], own[0, 2] = shift[0], shift[1], 0.0
@@ -75,17 +75,18 @@ def put_on_floor(
             height = fma(body[bone, 2, k], supports[point, k], height)
         lowest = min(lowest, height + body[bone, 2, 3])
     for bone in range(len(body)):
-        body[bone, 2, 3] -= lowest
+        body[bone, 2, 3] += shift[2] - lowest
     cos, sin = math.cos(place[2]), math.sin(place[2])
     world[0, 0], world[0, 1], world[1, 0], world[1, 1] = cos, -sin, sin, cos
     world[0, 3], world[1, 3] = place[0], place[1]
-    for bone in range(len(bones)):
+    for bone in range(len(body)):
         multiply(world, body[bone], bones[bone])
+    bones[len(body)] = world
 
 
 @njit(cache=True, nogil=True)
 def carry(bones: Array, bone: NDArray[np.int64], offset_m: Array, poses: Array) -> None:
-    """Return the poses of P parts carried by bones (17, 4, 4), `offset_m` from the joint of their `bone`."""
+    """Return the poses of P parts carried by bones (18, 4, 4), `offset_m` from the joint of their `bone`."""
     for p in range(len(bone)):
         own, pose, (x, y, z) = bones[bone[p]], poses[p], offset_m[p]
         for i in range(4):

@@ -27,6 +27,9 @@ LEG_PARTS = tuple(f"{side}_{part}" for side in SIDES for part in ("thigh", "shin
 TORSO_PARTS = ("chest", "abdomen", "pelvis")
 HEAD_PARTS = ("head", "hair", "neck")
 BAG_PART = "bag"
+FLOOR = "floor"
+"""Name of the frame on the floor under a person, beside those of the bones."""
+FRAME_INDEX: Final = {**BONE_INDEX, FLOOR: len(BONE_INDEX)}
 BODY_PARTS = (*HEAD_PARTS, *TORSO_PARTS, *ARM_PARTS, *LEG_PARTS)
 
 # A pattern on the chest is centred on its part's origin, so that origin is the middle of the chest.
@@ -35,7 +38,7 @@ _CHEST_CENTRE = 0.735
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PartGeometry:
-    """Shapes of one part, in the frame of a bone shifted by `offset_m`."""
+    """Shapes of one part, in the frame of a bone, or of the floor, shifted by `offset_m`."""
 
     bone: str
     shapes: tuple[Shape, ...]
@@ -312,5 +315,5 @@ def bag(side: str, stature_m: float) -> PartGeometry:
 
 
 def bone_index(parts: Mapping[str, PartGeometry]) -> NDArray[np.int64]:
-    """Return the (P,) index of the bone that carries each part."""
-    return np.array([BONE_INDEX[part.bone] for part in parts.values()])
+    """Return the (P,) index in `FRAME_INDEX` of the frame that carries each part."""
+    return np.array([FRAME_INDEX[part.bone] for part in parts.values()])

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 import numpy as np
 from pydantic import Field
@@ -21,6 +21,9 @@ _TRUNK = ("chest", "abdomen")
 _UPPER_ARMS, _SLEEVES = _both("upper_arm"), _both("upper_arm", "forearm")
 _LEGS = ("pelvis", *_both("thigh", "shin"))
 _PLAIN = Pattern()
+
+ROOM_C: Final = 21.0
+"""[degC] air for which the catalogue's temperatures hold."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

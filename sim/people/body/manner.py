@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, lateral, point_along, turned_back
 
 Array = NDArray[np.float64]
-Hold = Literal["free", "pocket", "strap", "telephone", "in_front", "carries"]
+Hold = Literal[
+    "free", "pocket", "strap", "telephone", "in_front", "carries", "phone_in_hand", "box", "handle"
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,6 +33,10 @@ class Manner:
         stance_ahead: lead of the left foot over the right one while standing, as a fraction of stature.
         leans: shift of the weight to one leg while standing, -1..1, positive for the left.
         toe_out_rad: outward angle of the feet.
+        sways: movement of the hips from side to side while walking, relative to the motion capture clip.
+        bent_knees: reduction of the longest reach of a leg, in leg lengths.
+        clearance: height to which the feet are lifted, relative to other people.
+        runs: whether the person runs at speeds above 1.6 m/s.
         holds: what the left and the right hand hold when they are not needed otherwise.
     """
 
@@ -47,6 +53,10 @@ class Manner:
     stance_ahead: float = 0.0
     leans: float = 0.0
     toe_out_rad: float = math.radians(7.0)
+    sways: float = 1.0
+    bent_knees: float = 0.0
+    clearance: float = 1.0
+    runs: bool = False
     holds: tuple[Hold, Hold] = ("free", "free")
 
 
@@ -114,6 +124,9 @@ _ELBOW_AND_PALM: Final[dict[Hold, tuple[tuple[float, float, float], tuple[float,
     "telephone": ((0.12, 0.09, -0.11), (0.03, -0.08, 0.09)),
     "in_front": ((-0.02, 0.06, -0.175), (0.165, -0.085, -0.205)),
     "carries": ((0.0, 0.035, -0.18), (0.02, 0.03, -0.37)),
+    "phone_in_hand": ((0.02, 0.06, -0.18), (0.18, -0.09, -0.12)),
+    "box": ((-0.02, 0.03, -0.185), (0.19, 0.0, -0.205)),
+    "handle": ((-0.03, 0.06, -0.18), (0.20, 0.0, -0.21)),
 }
 
 

@@ -84,7 +84,7 @@ class Builds(NamedTuple):
     """The constant properties of Q people.
 
     Attributes:
-        rotations, sway: (Q, A, P, 17, 3) [rad] and (Q, A, P, 3) [m] gait tables by amplitude and phase.
+        rotations, sway: (Q, A, P, 17, 3) [rad] and (Q, A, P, 3) [m] gait tables of `Gait`.
         root_scale: (Q,) scale of the gaits, see `Gait`.
         height_m: (Q,).
         held, is_held: (Q, 17, 3) [rad] and (Q, 17) arms that hold something.
@@ -142,15 +142,16 @@ def move_limbs(
 
 
 @njit(cache=True, nogil=True)
-def hold(builds: Builds, stances: Stances, q: int, turns: Array) -> tuple[float, float]:
+def hold(builds: Builds, stances: Stances, q: int, turns: Array) -> tuple[float, float, float]:
     """Return the pose of one of Q people from gait, postures, arms, gaze and sway.
 
     Returns:
-        Offset of the pelvis [m] to the front and to the left; the rotation vectors [rad] go to `turns`.
+        Offset of the pelvis [m] to the front and to the left, and the height [m] of the lowest sole above the
+        floor; the rotation vectors [rad] go to `turns`.
     """
     stance = stances[q]
     amplitude = amplitude_of(stance.speed, builds.root_scale[q])
-    front, left = gait_pose(builds.rotations[q], builds.sway[q], stance.phase, amplitude, turns)
+    front, left, up = gait_pose(builds.rotations[q], builds.sway[q], stance.phase, amplitude, turns)
     weights, arms = np.empty(len(stance.blend)), 0.0
     for k in range(len(weights)):
         weights[k] = stance.blend[k] * stance.blend[k] * (3.0 - 2.0 * stance.blend[k])
@@ -171,7 +172,7 @@ def hold(builds: Builds, stances: Stances, q: int, turns: Array) -> tuple[float,
     if stance.gaze_rad != 0.0:
         for k in range(len(_LOOKING)):
             turns[_LOOKING[k], 2] += _LOOKING_SHARES[k] * stance.gaze_rad
-    return front, left
+    return front, left, up
 
 
 @njit(cache=True)

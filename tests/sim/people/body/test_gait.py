@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.people.body.body_shapes import sole_points
-from peopleboy.sim.people.body.gait import fourier_basis, load_walking_clip
+from peopleboy.sim.people.body.gait_styles import GAIT_STYLES
+from peopleboy.sim.people.body.motion_clips import fourier_basis, load_motion_clip
 from peopleboy.sim.people.body.skeleton import Posture, mirror
 from peopleboy.sim.people.person_config import Waypoint
 from tests.helpers.worlds.walkers import make_person, settle, walk
@@ -130,7 +131,7 @@ def test_arms_swing_against_the_legs_and_less_with_a_bag():
 
 
 def test_the_clip_is_symmetric_after_half_a_cycle():
-    clip = load_walking_clip()
+    clip = load_motion_clip("walking")
     phases = np.linspace(0, 1, 17)
     left = np.tensordot(fourier_basis(phases), clip.rotations, axes=1)
     right = mirror(np.tensordot(fourier_basis(phases + 0.5), clip.rotations, axes=1))
@@ -143,3 +144,47 @@ def test_a_standing_person_sways_without_moving_its_feet():
     assert np.ptp(track[..., :2], axis=0).max() < 0.012
     heads = np.array([person.joints()[0, :2] for _ in walk(person, 6.0, dt=1 / 30, start=6.0)])
     assert 0.002 < np.ptp(heads, axis=0).max() < 0.04
+
+
+GAITS = [(gait, {"running": 2.4, "shuffling": 0.5, "old": 0.8}.get(gait, 1.0)) for gait in GAIT_STYLES]
+
+
+@pytest.mark.parametrize(("gait", "speed"), GAITS)
+def test_the_sole_rests_in_every_gait(gait, speed):
+    track = sole_tracks(settle(walker(speed, gait=gait), 3.0), 3.0, start=3.0)
+    rests = [(point, span) for point in (1, 4) for span in contacts(track[:, point, 2])]
+    assert len(rests) >= 4
+    for point, (a, b) in rests:
+        assert np.hypot(*np.ptp(track[a:b, point, :2], axis=0)) < 0.01
+    assert track[..., 2].min() > -0.002
+
+
+def test_only_who_runs_leaves_the_floor_and_only_when_fast():
+    def flight(**settings):
+        track = sole_tracks(settle(walker(**settings), 3.0), 2.0, start=3.0)
+        return track[..., 2].min(axis=1)
+
+    assert flight(speed=2.4).max() < 1e-9
+    assert flight(speed=1.0, gait="running").max() < 1e-9
+    lowest = flight(speed=2.4, gait="running")
+    assert 0.04 < lowest.max() < 0.1
+    assert 0.2 < np.mean(lowest > 0.005) < 0.5
+
+
+def test_gaits_differ_as_they_say():
+    def stride_and_trunk(gait):
+        person = settle(walker(0.8, gait=gait), 3.0)
+        phases, leans, widths = [], [], []
+        for _ in walk(person, 3.0, start=3.0):
+            joints = person.joints()
+            shoulders, hips = joints[[5, 6]].mean(axis=0), joints[[11, 12]].mean(axis=0)
+            leans.append(shoulders[0] - hips[0])
+            phases.append(float(person.stance["phase"][0]))
+            widths.append(joints[15, 1] - joints[16, 1])
+        cycles = np.unwrap(np.array(phases) * 2.0 * np.pi) / (2.0 * np.pi)
+        return 2.4 / (cycles[-1] - cycles[0]), np.mean(leans), np.mean(widths)
+
+    usual, old, heavy, shuffling = map(stride_and_trunk, ("usual", "old", "heavy", "shuffling"))
+    assert shuffling[0] < 0.6 * usual[0] < old[0] < 0.85 * usual[0]
+    assert shuffling[1] > old[1] > usual[1] + 0.05
+    assert heavy[2] > usual[2] + 0.04

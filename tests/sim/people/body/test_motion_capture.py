@@ -2,13 +2,14 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
-from peopleboy.sim.people.body.gait import fourier_basis, load_walking_clip
+from peopleboy.sim.people.body.motion_clips import ClipName, fourier_basis, load_motion_clip
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES
 from peopleboy.sim.physics.urdf import data_folder
 
-CLIP = Path("data", "motions", "humanoid3d_walk.txt")
+CLIPS = Path("data", "motions")
 
 # Where each joint's numbers start in a frame: frame time, root position, root rotation, chest, neck, ...
 _BALL_JOINTS = {
@@ -25,9 +26,14 @@ _HINGES = {"right_shin": 20, "right_forearm": 29, "left_shin": 34, "left_forearm
 _SHARED_JOINTS = {("abdomen", "chest"): 8, ("neck", "head"): 12}
 
 
-def test_the_walk_is_the_fit_of_five_harmonics_to_the_clip_without_the_jump_where_it_was_mirrored() -> None:
-    clip = load_walking_clip()
-    frames = np.array(json.loads((data_folder() / CLIP).read_text("utf-8"))["Frames"])[:-1]
+@pytest.mark.parametrize(
+    ("name", "file"), [("walking", "humanoid3d_walk.txt"), ("running", "humanoid3d_run.txt")]
+)
+def test_a_gait_is_the_fit_of_five_harmonics_to_its_clip_without_the_jump_where_it_was_mirrored(
+    name: ClipName, file: str
+) -> None:
+    clip = load_motion_clip(name)
+    frames = np.array(json.loads((data_folder() / CLIPS / file).read_text("utf-8"))["Frames"])[:-1]
     count = len(frames)
     stride = (frames[-1, 1] - frames[0, 1]) * count / (count - 1)
     steady = stride * np.arange(count) / count
