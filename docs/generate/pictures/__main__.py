@@ -41,6 +41,8 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "people_finely": thermal.finely,
     "light": light.light,
     "skins": skins.skins,
+    "equipment": skins.equipment,
+    "people_at_distances": skins.distances,
     "hard_scenes": hard_scenes.hard_scenes,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
@@ -66,7 +68,14 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
 }
 
 # Pictures for which fewer colours are sufficient.
-FEWER_COLOURS = {"first_run": 80, "panorama": 96, "scene_model": 192, "skins": 48}
+FEWER_COLOURS = {
+    "first_run": 80,
+    "panorama": 96,
+    "scene_model": 192,
+    "skins": 48,
+    "equipment": 40,
+    "people_at_distances": 64,
+}
 
 for name in sys.argv[1:] or PICTURES:
     print(save(PICTURES[name](), FOLDER / f"{name}.png", FEWER_COLOURS.get(name, COLOURS)))
