@@ -3,11 +3,13 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput, found_in
+from peopleboy.sim.people.body.gait_styles import GaitName
+from peopleboy.sim.people.equipment import Equipment
 from peopleboy.wording import hint
 
 
@@ -116,12 +118,23 @@ SHARES: Final[Mapping[str, Mapping[str, float]]] = {
     "command": {"straight": 0.4, "curve": 0.35, "turn": 0.15, "stop": 0.1},
     "posture": {
         "standing": 0.6, "sitting": 0.1, "bending": 0.1, "arms_crossed": 0.1, "arms_raised": 0.1,
+        "crouching": 0.0, "lying": 0.0, "fallen": 0.0,
     },
-    "arms": {"swinging": 0.85, "crossed": 0.1, "raised": 0.05},
+    "arms": {
+        "swinging": 0.85, "crossed": 0.1, "raised": 0.05,
+        "in_pockets": 0.0, "telephone": 0.0, "phone_in_hand": 0.0,
+    },
+    "bodies": {"capsules": 1.0, "skins": 0.0},
+    "age": {"adult": 1.0, "child": 0.0, "elder": 0.0},
+    "gait": {name: float(name == "usual") for name in get_args(GaitName)},
+    "equipment": {name: float(name == "nothing") for name in get_args(Equipment)},
     "light_changes": {"never": 0.8, "once": 0.2},
     "clothes": {"as people dress": 0.75, "all different": 0.25},
 }  # fmt: skip
-"""Values with a categorical distribution, with their probabilities."""
+"""Values with a categorical distribution, with their probabilities.
+
+Trackers were trained, and results measured, without those with a probability of 0.
+"""
 
 ODDS: Final[Mapping[str, tuple[float, str]]] = {
     "has_sun": (0.4, "the sun shines into the room or onto the street"),
@@ -221,12 +234,16 @@ def _range(usual: Range, value: Any) -> Range:
 
 
 def _share(usual: Mapping[str, float], value: Any) -> Mapping[str, float]:
-    """Return the probabilities of some values: of one, of several as usual among them, or by weights."""
+    """Return the probabilities of some values: of one, of several, or by weights.
+
+    Several are as usual among them; if one of them usually has a probability of 0, they are equal.
+    """
     names = list(value) if isinstance(value, list | tuple | Mapping) else [value]
     for name in names or [value]:
         if name not in list(usual):
             raise BadInput(f"unknown value {name!r}; choose from {', '.join(usual)}")
-    weights = value if isinstance(value, Mapping) else {name: usual[name] for name in names}
+    own = {name: usual[name] for name in names}
+    weights = value if isinstance(value, Mapping) else own if all(own.values()) else dict.fromkeys(names, 1.0)
     if not all(is_number(weight, is_whole=False) and weight >= 0.0 for weight in weights.values()):
         raise BadInput(f"{value!r} must have weights of 0 or more")
     if not (total := math.fsum(weights.values())):

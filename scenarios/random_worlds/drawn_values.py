@@ -76,7 +76,7 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
         "top": [person["clothes"]["top"] for person in people],
         "bottom": [person["clothes"]["bottom"] for person in people],
         "hair": [person["clothes"]["hair"] for person in people],
-        "arms": [person["arms"] for person in people],
+        **{key: [person[key] for person in people] for key in ("age", "gait", "arms", "equipment")},
         **_bearings(people, played["drawn"]["seed"]),
         "points": [len(person["path"]) for person in people],
         "speed": [point["speed_m_s"] for point in points],

@@ -27,22 +27,35 @@ from peopleboy.scenarios.random_worlds.draw_scene import (
     with_one_more,
 )
 from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.people.equipment import RIDDEN
 from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.pieces import Kind
 
 _WAYPOINT_TRIES: Final = 12
+_RUNS_M_S: Final = 1.7  # a runner's speed is this and 0.4 times that of a walk
 _NEAREST_M: Final = 1.0  # minimum distance to the robot at the start
 
 
-def draw_person(draws: Draws, scene: Data, ground: Ground, name: str) -> Data:
-    """Sample a person with a free path; if none is found, the path is not free."""
+def draw_person(draws: Draws, kinds: Draws, scene: Data, ground: Ground, name: str) -> Data:
+    """Sample a person with a free path; if none is found, the path is not free.
+
+    Args:
+        draws: samples everything else.
+        kinds: samples the kind of person, apart, so that it does not depend on the rest.
+        scene: the world.
+        ground: its floor.
+        name: name of the person.
+    """
     person: Data = {
         "name": name,
         "yields": draws.happens("yields"),
         "bag": draws.happens("carries"),
         "arms": draws.one_of("arms"),
         "path": [],
+        **_kind_of_person(kinds),
     }
+    if "equipment" in person:
+        person |= {"bag": False, "arms": "swinging"}
     lasts = scene["duration_s"]
     if draws.happens("enters_later"):
         person["enter_s"] = rounded(draws.rng.uniform(0.0, 0.6) * lasts)
@@ -54,14 +67,32 @@ def draw_person(draws: Draws, scene: Data, ground: Ground, name: str) -> Data:
     return person
 
 
+def _kind_of_person(kinds: Draws) -> Data:
+    """Sample age, gait and equipment; those that are the default are left out."""
+    usual = {"age": "adult", "gait": "usual", "equipment": "nothing"}
+    kind = {key: value for key in usual if (value := kinds.one_of(key)) != usual[key]}
+    if kind.get("equipment") in RIDDEN:
+        kind.pop("gait", None)
+    return kind
+
+
 def _longer(draws: Draws, scene: Data, ground: Ground, person: Data, is_in_view: bool) -> list[Data]:
     """Append a reachable waypoint to a path; if none is found, append one only to an empty path."""
     path: list[Data] = person["path"]
     for _ in range(_WAYPOINT_TRIES):
-        longer = [*path, _waypoint(draws, scene, is_in_view and not path)]
+        longer = [*path, _suited(_waypoint(draws, scene, is_in_view and not path), person)]
         if ground.fault(validated(PersonSpec, person | {"path": longer})) is None:
             return longer
     return path or longer
+
+
+def _suited(waypoint: Data, person: Data) -> Data:
+    """Change a waypoint so that its person can do what it says: runners are fast, and nothing is let go."""
+    if person.get("gait") == "running":
+        waypoint["speed_m_s"] = rounded(_RUNS_M_S + 0.4 * waypoint["speed_m_s"])
+    if "equipment" in person and "posture" in waypoint:
+        waypoint["posture"] = "standing"
+    return waypoint
 
 
 def _waypoint(draws: Draws, scene: Data, is_in_view: bool) -> Data:
@@ -194,6 +225,9 @@ def random_world(seed: int, duration_s: float = LASTS_S, distribution: Distribut
         "clothes_differ": draws.one_of("clothes") == "all different",
         "lights": _lights(draws, duration_s),
     }
+    kinds = Draws(stream(seed, "random_people"), distribution)
+    if (bodies := kinds.one_of("bodies")) != "capsules":
+        scene["bodies"] = bodies
     place = draw_place(draws)
     scene |= {"place": place, "robot": draw_robot(draws, place, duration_s)}
     for _ in range(draws.count("doors")):
@@ -206,7 +240,7 @@ def random_world(seed: int, duration_s: float = LASTS_S, distribution: Distribut
     ground = parse_scenario(scene, source=scene["name"], folder=Path()).ground
     for number in range(draws.count("people")):
         scene = with_one_more(
-            scene, "people", partial(draw_person, draws, scene, ground, f"p{number}"), _TRIES
+            scene, "people", partial(draw_person, draws, kinds, scene, ground, f"p{number}"), _TRIES
         )
     return scene
 

@@ -30,12 +30,27 @@ _SHARES: Final[Mapping[str, Mapping[str, float]]] = {
     "robot": {"stands": 0.9, "drives": 0.1},
 }
 _ODDS: Final[Mapping[str, float]] = {"begins_in_view": 0.9, "enters_later": 0.1}
-_POSTURES: Final[Mapping[str, Mapping[str, float]]] = {
+_PEOPLE: Final[Mapping[str, Mapping[str, float]]] = {
     "posture": {
         "standing": 0.3, "sitting": 0.15, "bending": 0.14, "crouching": 0.14, "lying": 0.08, "fallen": 0.07,
         "arms_crossed": 0.06, "arms_raised": 0.06,
     },
+    "arms": {
+        "swinging": 0.8, "crossed": 0.06, "raised": 0.04, "in_pockets": 0.03, "telephone": 0.03,
+        "phone_in_hand": 0.04,
+    },
+    "bodies": {"capsules": 0.4, "skins": 0.6},
+    "age": {"adult": 0.75, "elder": 0.15, "child": 0.1},
+    "gait": {
+        "usual": 0.64, "strolling": 0.08, "brisk": 0.08, "old": 0.05, "heavy": 0.04, "shuffling": 0.03,
+        "running": 0.08,
+    },
+    "equipment": {
+        "nothing": 0.84, "box": 0.02, "walking_frame": 0.01, "trolley": 0.03, "pushchair": 0.02,
+        "wheelchair": 0.02, "bicycle": 0.06,
+    },
 }  # fmt: skip
+"""Kinds of people, as far as they differ from those of other random worlds."""
 _HIGH: Final[Mapping[str, tuple[float, float]]] = {
     "street_length": (18.0, 40.0),
     "room_length": (9.0, 20.0),
@@ -52,15 +67,15 @@ def _distribution(
     shares: Mapping[str, Mapping[str, float]],
     odds: Mapping[str, float],
 ) -> Distribution:
-    """Return the distribution of random worlds with other ranges, shares and odds, and with all postures."""
+    """Return a distribution of random worlds with other ranges, shares and odds, and all kinds of people."""
     return Distribution(
         ranges={**RANGES, **{key: replace(RANGES[key], low=a, high=b) for key, (a, b) in ranges.items()}},
-        shares={**SHARES, **_POSTURES, **shares},
+        shares={**SHARES, **_PEOPLE, **shares},
         odds={**ODDS, **{key: (share, ODDS[key][1]) for key, share in odds.items()}},
     )
 
 
-_ALL_POSTURES: Final = _distribution({}, {}, {"pauses": 0.4, "begins_in_view": 0.8})
+_ALL_PEOPLE: Final = _distribution({}, {}, {"pauses": 0.4, "begins_in_view": 0.8})
 _CROWDS: Final = _distribution(_RANGES, _SHARES, {**_ODDS, "pauses": 0.35})
 _FROM_ABOVE: Final = _distribution(_HIGH, {**_SHARES, "place": {"room": 0.15, "street": 0.85}}, _ODDS)
 _TOGETHER: Final = 0.5  # share of people with a companion
@@ -68,21 +83,9 @@ _APART_M: Final = (0.45, 0.9)
 _TRIES: Final = 4
 
 
-_SKINS: Final = 0.6  # share of worlds whose people have skins instead of capsules
-_AGES: Final = {"adult": 0.75, "elder": 0.15, "child": 0.1}
-
-
-def ordinary_world(seed: int, distribution: Distribution = _ALL_POSTURES) -> World:
-    """Draw a random world with people of all ages and in all postures."""
-    world = random_world(seed, distribution=distribution)
-    rng = stream(seed, "training_people")
-    people = [
-        person | {"age": str(rng.choice(list(_AGES), p=list(_AGES.values())))}
-        for person in world.get("people", ())
-    ]
-    older = world | ({"people": people} if people else {})
-    bodies = {"bodies": "skins"} if rng.random() < _SKINS else {}
-    return (older if is_valid(older) else world) | bodies
+def ordinary_world(seed: int, distribution: Distribution = _ALL_PEOPLE) -> World:
+    """Draw a random world with people of all ages and gaits, in all postures, some with equipment."""
+    return random_world(seed, distribution=distribution)
 
 
 def crowded_world(seed: int) -> dict[str, Any]:

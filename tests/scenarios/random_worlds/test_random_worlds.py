@@ -23,6 +23,9 @@ from tests.helpers.some_of import some_of
 QUICK = 40
 ROUNDING = 0.011
 BESIDE = {
+    "age",
+    "gait",
+    "equipment",
     "thing",
     "sex",
     "top",

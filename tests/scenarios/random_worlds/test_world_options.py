@@ -8,7 +8,9 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.make_dataset import SetOptions
+from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.random_worlds.distribution import SHARES, narrowed
+from peopleboy.scenarios.random_worlds.random_world import random_world
 
 
 def test_options_override_the_file_and_the_rest_stays(tmp_path: Path) -> None:
@@ -33,6 +35,51 @@ def test_only_one_kind_of_place_keeps_its_proportions(only: str, kinds: int) -> 
     assert len(places) == kinds
     assert sum(places.values()) == pytest.approx(1.0)
     assert len({round(share / SHARES["place"][name], 9) for name, share in places.items()}) == 1
+
+
+VARIED = {
+    "bodies": "skins",
+    "age": ["adult", "child", "elder"],
+    "gait": {"usual": 1, "running": 1, "old": 1},
+    "equipment": {"nothing": 1, "bicycle": 1, "trolley": 1, "wheelchair": 1},
+    "posture": ["lying", "crouching"],
+    "pauses": 0.8,
+    "people": [5, 10],
+    "things": 0,
+}
+
+
+def test_several_values_that_are_never_drawn_by_default_are_equal() -> None:
+    found = narrowed({"age": ["child", "elder"], "posture": ["sitting", "bending"], "bodies": "skins"}).shares
+    assert found["age"] == {"child": 0.5, "elder": 0.5}
+    assert found["posture"] == {"sitting": 0.5, "bending": 0.5}
+    assert found["bodies"] == {"skins": 1.0}
+
+
+def test_people_of_all_kinds_are_drawn_where_the_distribution_has_them() -> None:
+    worlds = [random_world(seed, distribution=narrowed(VARIED)) for seed in range(6)]
+    people = [person for world in worlds for person in world.get("people", ())]
+    for key, values in {
+        "age": {"adult", "child", "elder"},
+        "gait": {"usual", "running", "old"},
+        "equipment": {"nothing", "bicycle", "trolley", "wheelchair"},
+    }.items():
+        usual = {"age": "adult", "gait": "usual", "equipment": "nothing"}[key]
+        assert {person.get(key, usual) for person in people} == values
+    assert {world["bodies"] for world in worlds} == {"skins"}
+    for world in worlds:
+        parse_scenario(world, source="world", folder=Path())
+    for person in people:
+        if person.get("gait") == "running" and "equipment" not in person:
+            assert min(point["speed_m_s"] for point in person["path"]) >= 1.6
+
+
+def test_kinds_of_people_do_not_change_anything_else_of_a_world() -> None:
+    plain, varied = (random_world(4, distribution=narrowed(given)) for given in ({}, {"age": "elder"}))
+    assert [person | {"age": "elder"} for person in plain["people"]] == varied["people"]
+    assert {key: value for key, value in plain.items() if key != "people"} == {
+        key: value for key, value in varied.items() if key != "people"
+    }
 
 
 @pytest.mark.parametrize(
