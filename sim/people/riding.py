@@ -1,6 +1,7 @@
 """Poses of people who ride: in a wheelchair, or on a bicycle whose pedals turn with the way."""
 
 import math
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -42,13 +43,16 @@ def riding_gait(
         sole_m: [m] height of the ankle above the sole.
         stature_m: [m].
     """
-
-    def tables() -> tuple[Array, Array]:
-        rotations = _poses(kind, offsets, arm_m, sole_m, stature_m)
-        shape = len(AMPLITUDES), PHASES, len(BONES), 3
-        return np.broadcast_to(rotations, shape).copy(), np.zeros((*shape[:2], 3))
-
+    tables = partial(_riding_tables, kind, offsets, arm_m, sole_m, stature_m)
     return Gait(root_scale=1.0, unit_stride_m=_PER_TURN_M, make_tables=tables)
+
+
+def _riding_tables(
+    kind: Equipment, offsets: Array, arm_m: tuple[float, float], sole_m: float, stature_m: float
+) -> tuple[Array, Array]:
+    rotations = _poses(kind, offsets, arm_m, sole_m, stature_m)
+    shape = len(AMPLITUDES), PHASES, len(BONES), 3
+    return np.broadcast_to(rotations, shape).copy(), np.zeros((*shape[:2], 3))
 
 
 def riding_supports(kind: Equipment, stature_m: float) -> Array:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
@@ -13,7 +13,7 @@ from peopleboy.sim.people.body.body_shapes import SIDES
 from peopleboy.sim.people.body.manner import USUAL, Manner
 from peopleboy.sim.people.body.motion_clips import load_motion_clip
 from peopleboy.sim.people.body.skeleton import BONES
-from peopleboy.sim.people.body.steps import PHASES, RUNNING_AMPLITUDE, Cycle, Steps, bend_leg
+from peopleboy.sim.people.body.steps import PHASES, RUNNING_AMPLITUDE, Steps, bend_leg
 
 Array = NDArray[np.float64]
 
@@ -109,23 +109,25 @@ def walking_gait(offsets: Array, soles: Array, stature_m: float, manner: Manner 
         Steps(offsets, soles, stature_m, manner, load_motion_clip(name)) for name in ("walking", "running")
     )
     unit_stride_m = load_motion_clip("walking").stride_m * walk.scale * manner.stride
-
-    def cycle(amplitude: float) -> Cycle:
-        stride_m = unit_stride_m * amplitude
-        if manner.runs and amplitude >= RUNNING_AMPLITUDE:
-            return run.run(amplitude, stride_m)
-        return walk.walk(amplitude, stride_m)
-
-    def tables() -> tuple[Array, Array]:
-        cycles = [cycle(amplitude) for amplitude in AMPLITUDES.tolist()]
-        rotations = np.concatenate([each.rotations for each in cycles])
-        pelvis = np.concatenate([each.pelvis_m for each in cycles])
-        for side in SIDES:
-            ankle = np.concatenate([each.ankle_m[side] for each in cycles])
-            pitch = np.concatenate([each.pitch_rad[side] for each in cycles])
-            bend_leg(side, offsets, rotations, pelvis, ankle, pitch, manner.toe_out_rad)
-        pelvis[:, 2] = np.concatenate([each.lift_m for each in cycles])
-        shape = len(AMPLITUDES), PHASES
-        return rotations.reshape(*shape, len(BONES), 3), pelvis.reshape(*shape, 3)
-
+    tables = partial(_walking_tables, walk, run if manner.runs else None, offsets, unit_stride_m, manner)
     return Gait(math.sqrt(walk.scale), unit_stride_m, tables)
+
+
+def _walking_tables(
+    walk: Steps, run: Steps | None, offsets: Array, unit_stride_m: float, manner: Manner
+) -> tuple[Array, Array]:
+    cycles = [
+        walk.walk(amplitude, unit_stride_m * amplitude)
+        if run is None or amplitude < RUNNING_AMPLITUDE
+        else run.run(amplitude, unit_stride_m * amplitude)
+        for amplitude in AMPLITUDES.tolist()
+    ]
+    rotations = np.concatenate([each.rotations for each in cycles])
+    pelvis = np.concatenate([each.pelvis_m for each in cycles])
+    for side in SIDES:
+        ankle = np.concatenate([each.ankle_m[side] for each in cycles])
+        pitch = np.concatenate([each.pitch_rad[side] for each in cycles])
+        bend_leg(side, offsets, rotations, pelvis, ankle, pitch, manner.toe_out_rad)
+    pelvis[:, 2] = np.concatenate([each.lift_m for each in cycles])
+    shape = len(AMPLITUDES), PHASES
+    return rotations.reshape(*shape, len(BONES), 3), pelvis.reshape(*shape, 3)

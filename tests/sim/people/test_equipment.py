@@ -1,3 +1,4 @@
+import pickle
 from typing import get_args
 
 import numpy as np
@@ -101,6 +102,13 @@ def test_equipment_is_an_object_of_its_own_which_hides_people(kind):
             names = list(truth.people[0].part_temperature_c)
             assert not {"wheels", "frame", "carton"} & set(names)
         assert f"ann.{kind}" in seen
+
+
+def test_a_copied_person_goes_on_with_the_same_poses():
+    for settings in ({"equipment": "bicycle"}, {"gait": "running"}):
+        one = settle(make_person(path=WAY, **settings), 0.5)
+        other = pickle.loads(pickle.dumps(one))
+        np.testing.assert_array_equal(one.poses(), other.poses())
 
 
 def test_without_equipment_a_person_has_no_other_parts():
