@@ -68,7 +68,7 @@ def test_dir_and_a_star_import_give_the_names_to_start_with() -> None:
     assert {"World", "Frame", "make_tracker", "TrackBoxes", "TrueBoxes", "evaluate"} <= used
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_the_examples_on_the_page_pass_the_strict_checks_of_mypy(tmp_path: Path) -> None:
     page = ROOT / "docs" / "reference" / "python.md"
     code = [block.code for block in blocks(page) if block.language == "python"]

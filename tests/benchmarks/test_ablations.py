@@ -25,7 +25,7 @@ def recording() -> Recording:
     return record(load_scenario("crossing_2").lasting(1.0), 100)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_all_looks_together_are_those_of_the_detector(recording: Recording) -> None:
     whole, all_stages = PeopleDetector(least_score=LEAST), DetectorOfStage(DetectorStage.BOX_REFINEMENT)
     for frame in recording.frames:

@@ -114,7 +114,7 @@ def test_runs_with_and_without_it_are_compared_as_two_trackers(capsys: pytest.Ca
     }
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_another_process_gives_the_same_bytes(home: Path) -> None:
     command = ("run", "brief.yaml", "--detector", "warm_for_test:Warm", "--no-recording")
     assert run_cli(*command, "--out", "here") == 0

@@ -60,6 +60,7 @@ def test_an_interrupt_ends_it_with_all_files_written(tmp_path):
     }
 
 
+@pytest.mark.thorough
 def test_a_reader_that_ends_ends_it_with_all_files_written(tmp_path):
     tracking = start(tmp_path / "out", *RAW)
     feed(tracking, range(2))
@@ -73,6 +74,7 @@ def test_a_reader_that_ends_ends_it_with_all_files_written(tmp_path):
     assert about(tmp_path / "out")["frames"] == 3
 
 
+@pytest.mark.thorough
 def test_encoded_video_of_a_pipe_is_decoded(tmp_path):
     tracking = start(tmp_path / "out")
     printed, errors = tracking.communicate(write_video(tmp_path / "film.mkv").read_bytes(), timeout=120)

@@ -249,7 +249,7 @@ def test_a_run_that_goes_on_is_not_taken_for_one_that_was_killed(tmp_path: Path)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("name", some_of(["SIGTERM", "SIGHUP"], 2))
 def test_a_run_ended_by_a_signal_says_so_and_is_no_failure_of_its_tracker(tmp_path: Path, name: str) -> None:
     script = (
         "import os, signal, sys; from peopleboy.scenarios.cli import main\n"

@@ -97,6 +97,7 @@ def test_skins_are_drawn_where_rays_meet_their_triangles() -> None:
     assert len(np.unique(group().view.part)) > 20
 
 
+@pytest.mark.thorough
 def test_triangles_across_the_near_plane_are_drawn_where_rays_meet_them() -> None:
     pose = np.eye(4)
     # To the left past the chest of a child that stands in front of the camera.

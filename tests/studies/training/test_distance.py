@@ -136,7 +136,7 @@ OTHER = {"half_apex_deg": 65.0, "lens_half_angle_deg": 30.0}
 FLAT = {"half_apex_deg": 46.0, "lens_half_angle_deg": 30.0}
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_another_mirror_is_refused_in_a_line_before_anything_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -24,7 +24,7 @@ def lesson(tmp_path_factory):
     return out
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_it_leaves_a_network_that_knows_its_camera_and_the_scenes_that_it_saw(lesson):
     model = ForegroundModel.load(lesson / "foreground.npz")
     assert (model.view.width_px, model.view.height_px) == (480, 120)

@@ -44,7 +44,7 @@ def few_patches(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(train_cascade, "patch_pool", lambda: some)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.usefixtures("quick", "few_patches")
 def test_drawn_people_are_learned_and_found_in_other_images(shots: list[ThermalImage]) -> None:
     kind = WindowKind.WHOLE

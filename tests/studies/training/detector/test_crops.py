@@ -73,7 +73,7 @@ def test_where_people_are_is_told_after_a_short_lesson() -> None:
     assert np.corrcoef(aside, others.offsets[:, 0])[0, 1] > 0.9
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.usefixtures("small")
 def test_the_same_lesson_gives_the_same_network() -> None:
     form = RescoringNetwork.ARCHITECTURE

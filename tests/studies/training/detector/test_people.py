@@ -88,6 +88,7 @@ def test_the_trained_network_is_the_one_that_runs() -> None:
         np.testing.assert_allclose(ours[stride], trained[stride][0], atol=2e-4)
 
 
+@pytest.mark.thorough
 def test_batches_are_the_same_for_the_same_random_numbers(shots: list[ThermalImage]) -> None:
     one, same = (list(batches(shots, np.random.default_rng(2), 2)) for _ in range(2))
     for (planes, targets), (others, other_targets) in zip(one, same, strict=True):
