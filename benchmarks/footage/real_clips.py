@@ -13,7 +13,8 @@ from benchmarks.compare import timed_ms
 from benchmarks.peers.ours import Detecting, Ours
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.options import DEFAULT_RATE_HZ, TrackOptions
-from peopleboy.scenarios.footage.views import ThermalViews, open_views
+from peopleboy.scenarios.footage.thermal_views import ThermalViews
+from peopleboy.scenarios.footage.views import open_views
 from peopleboy.scenarios.running.engine.task import ReportProgress
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
