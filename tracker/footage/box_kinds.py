@@ -19,8 +19,13 @@ from peopleboy.tracker.track import Track
 
 TORSO_PER_HEIGHT: Final = 0.22
 """Width of the torso divided by people's height: the median in random worlds."""
-WHOLE_PER_HEIGHT: Final = 0.45
-"""The same for annotated people, including arms and legs: chosen by HOTA on camel_08 and camel_21."""
+WHOLE_PER_HEIGHT: Final = 0.44
+"""The same for annotated people, including arms and legs."""
+_ABOVE: Final = 0.01
+_BELOW: Final = 0.03
+"""Margins of annotated boxes above the head and below the feet, in heights of the person."""
+_TALLER: Final = 1.0 + _ABOVE + _BELOW
+# These three were chosen on camel_01, 02, 08, 11, 21 and llvip, by HOTA and average precision.
 CORNER_PX: Final = 0.5
 """Corner of an image, relative to the middle of its first pixel."""
 _WIDEST_TORSO: Final = 0.3  # width divided by height up to which boxes are taken for torso boxes
@@ -67,14 +72,15 @@ def _within(torsos: Mapping[str, Box], frame: Frame) -> Iterator[tuple[str, Box]
 
 
 def whole_of(torso: Box) -> Box:
-    """Return a box of a typical whole person's width about the torso box, relative to the image's corner."""
+    """Return an annotator's box about a person with this torso box, relative to the image's corner."""
     left, top, width, height = torso
-    whole = WHOLE_PER_HEIGHT * height
-    return left + (width - whole) / 2.0 + CORNER_PX, top + CORNER_PX, whole, height
+    whole, tall = WHOLE_PER_HEIGHT * _TALLER * height, _TALLER * height
+    return left + (width - whole) / 2.0 + CORNER_PX, top - _ABOVE * height + CORNER_PX, whole, tall
 
 
 def torso_of(whole: Box) -> Box:
-    """Return the torso box centred on a whole person's box that is relative to the image's corner."""
-    left, top, width, height = whole
+    """Return the torso box of a person with an annotator's box that is relative to the image's corner."""
+    left, top, width, tall = whole
+    height = tall / _TALLER
     torso = TORSO_PER_HEIGHT * height
-    return left + (width - torso) / 2.0 - CORNER_PX, top - CORNER_PX, torso, height
+    return left + (width - torso) / 2.0 - CORNER_PX, top + _ABOVE * height - CORNER_PX, torso, height

@@ -19,7 +19,7 @@ from peopleboy.tracker.footage.box_kinds import (
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Status, Track
 
-TORSO, WHOLE = (40.0, 10.0, 22.0, 100.0), (29.0, 10.5, 45.0, 100.0)
+TORSO, WHOLE = (40.0, 10.0, 22.0, 100.0), (28.62, 9.5, 45.76, 104.0)
 
 
 def truth(*widths: float) -> TrueBoxes:
@@ -89,9 +89,13 @@ def test_who_is_outside_the_image_has_no_box_in_it() -> None:
 
 
 @given(left=st.floats(-100.0, 500.0), top=st.floats(-100.0, 500.0), height=st.floats(5.0, 400.0))
-def test_a_torso_and_the_whole_have_the_same_middle_and_rows(left: float, top: float, height: float) -> None:
+def test_the_whole_has_the_middle_of_the_torso_and_margins_above_and_below(
+    left: float, top: float, height: float
+) -> None:
     torso = (left, top, TORSO_PER_HEIGHT * height, height)
     whole = whole_of(torso)
     assert whole[0] + whole[2] / 2.0 == pytest.approx(left + torso[2] / 2.0 + 0.5)
-    assert whole[1:] == pytest.approx((top + 0.5, WHOLE_PER_HEIGHT * height, height))
+    assert whole[1] == pytest.approx(top + 0.5 - 0.01 * height)
+    assert whole[1] + whole[3] == pytest.approx(top + 0.5 + 1.03 * height)
+    assert whole[2] == pytest.approx(WHOLE_PER_HEIGHT * whole[3])
     assert torso_of(whole) == pytest.approx(torso)
