@@ -91,10 +91,8 @@ def make_equipment(
 ) -> tuple[EquipmentPart, ...]:
     """Make the parts of a thing to fit a person.
 
-    A thing has the temperature of the air [degC]. Its colour is random. `nothing` has no parts.
+    A thing has the temperature of the air [degC]. Its colour is random.
     """
-    if kind == "nothing":
-        return ()
     paint = COLOURS[str(rng.choice(_PAINTS))]
     bone = "chest" if kind == "box" else FLOOR
     return tuple(

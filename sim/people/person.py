@@ -47,7 +47,13 @@ from peopleboy.sim.people.body.skeleton import (
 from peopleboy.sim.people.body.skin import BodyPlan, dress_body
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
 from peopleboy.sim.people.conducts import ConductSituation, Mind
-from peopleboy.sim.people.equipment import EQUIPMENT_HOLDS, RIDDEN, find_grip, make_equipment
+from peopleboy.sim.people.equipment import (
+    EQUIPMENT_HOLDS,
+    RIDDEN,
+    EquipmentPart,
+    find_grip,
+    make_equipment,
+)
 from peopleboy.sim.people.person_config import Arms, PersonConfig
 from peopleboy.sim.people.riding import riding_gait, riding_supports
 from peopleboy.sim.people.walking.social_force import PlanarState
@@ -127,8 +133,7 @@ class Person:
         self._offsets, self._arm_m = plan.offsets, plan.arm_m
         self._manner = _manner_of(config, USUAL if finisher is None else finisher.manner)
         self.gait, self._supports = self._make_gait(plan.supports)
-        grip = find_grip(self._manner, self._offsets, self._supports, self._arm_m, config.height_m)
-        things = make_equipment(config.equipment, grip, air_c, rng)
+        things = self._make_equipment(air_c, rng)
         geometry = plan.geometry | {thing.name: thing.geometry for thing in things}
         parts += [Part(name=t.name, shapes=t.geometry.shapes, material=t.material) for t in things]
         self.parts = tuple(parts)
@@ -304,11 +309,19 @@ class Person:
 
     def _make_gait(self, supports: Array) -> tuple[Gait, Array]:
         """Return the gait, and the points that the body rests on."""
-        kind, stature_m = self.config.equipment, self.config.height_m
-        if kind not in RIDDEN:
-            return walking_gait(self._offsets, supports[:3], stature_m, self._manner), supports
-        gait = riding_gait(kind, self._offsets, self._arm_m, -float(supports[0, 2]), stature_m)
-        return gait, riding_supports(kind, stature_m)
+        config, offsets = self.config, self._offsets
+        if config.equipment not in RIDDEN:
+            return walking_gait(offsets, supports[:3], config.height_m, self._manner), supports
+        ankle_m = -float(supports[0, 2])
+        gait = riding_gait(config.equipment, offsets, self._arm_m, ankle_m, config.height_m)
+        return gait, riding_supports(config.equipment, config.height_m)
+
+    def _make_equipment(self, air_c: float, rng: np.random.Generator) -> tuple[EquipmentPart, ...]:
+        config = self.config
+        if config.equipment == "nothing":
+            return ()
+        grip = find_grip(self._manner, self._offsets, self._supports, self._arm_m, config.height_m)
+        return make_equipment(config.equipment, grip, air_c, rng)
 
     def _know_build(self) -> Builds:
         held, is_held = held_arms(self._manner.holds)
