@@ -159,6 +159,7 @@ PostureName = Literal[*Posture]  # type: ignore[valid-type]
 Face = Annotated[Annotated[Name, Tag("word")] | Annotated[Point, Tag("list")], Discriminator(word_or_list)]
 
 SPEEDS_M_S: Final = (0.1, 2.5)
+_RUNS_M_S: Final = 1.6  # an adult's stride is that of `RUNNING_AMPLITUDE` then
 _WITH_EQUIPMENT: Final = (Posture.STANDING, Posture.CALLING)
 _SAME_POINT_M: Final = 0.01
 
@@ -306,6 +307,11 @@ class ActorConfig(WalkConfig):
             raise BadInput(
                 "a person who leads the robot cannot also react to it; leave out reacts or leads",
                 key=("leads",),
+            )
+        if self.gait == "running" and max((w.speed_m_s for w in self.path), default=_RUNS_M_S) < _RUNS_M_S:
+            raise BadInput(
+                f"'running' needs a speed_m_s of at least {_RUNS_M_S:g} on its path; slower people walk",
+                key=("gait",),
             )
         if self.equipment != "nothing":
             self._check_equipment()

@@ -105,8 +105,9 @@ def test_equipment_is_an_object_of_its_own_which_hides_people(kind):
 
 
 def test_a_copied_person_goes_on_with_the_same_poses():
+    fast = (WAY[0], Waypoint(at_m=(30.0, 0.0), speed_m_s=2.0))
     for settings in ({"equipment": "bicycle"}, {"gait": "running"}):
-        one = settle(make_person(path=WAY, **settings), 0.5)
+        one = settle(make_person(path=fast, **settings), 0.5)
         other = pickle.loads(pickle.dumps(one))
         np.testing.assert_array_equal(one.poses(), other.poses())
 
@@ -121,9 +122,10 @@ def test_without_equipment_a_person_has_no_other_parts():
         ({"equipment": "trolley", "bag": True}, "no hand for a bag"),
         ({"equipment": "box", "arms": "crossed"}, "holds it with both hands"),
         ({"equipment": "bicycle", "gait": "old"}, "does not walk"),
+        ({"gait": "running"}, "needs a speed_m_s of at least 1.6"),
     ],
 )
-def test_what_a_person_with_equipment_cannot_do_is_refused(settings, words):
+def test_what_a_person_cannot_do_is_refused(settings, words):
     with pytest.raises(BadInput, match=words):
         PersonConfig(name="ann", path=WAY, **settings)
 

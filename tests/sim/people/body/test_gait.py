@@ -14,7 +14,11 @@ FOOT_PARTS = ("left_foot", "right_foot")
 
 
 def walker(speed, **settings):
-    path = (Waypoint(at_m=(0.0, 0.0)), Waypoint(at_m=(40.0, 0.0), speed_m_s=speed))
+    path = (
+        Waypoint(at_m=(0.0, 0.0)),
+        Waypoint(at_m=(40.0, 0.0), speed_m_s=speed),
+        Waypoint(at_m=(60.0, 0.0), speed_m_s=2.0),
+    )
     return make_person(path=path, **settings)
 
 
