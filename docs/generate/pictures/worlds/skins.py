@@ -63,12 +63,17 @@ def distances() -> Figure:
 def _person(number: int, away_m: float) -> tuple[Image, Image]:
     """Return the thermal and the colour image (`ROWS`, `COLUMNS`) of a person, enlarged if it is small."""
     ages, gaits = ("adult", "child", "adult", "elder"), list(GAIT_STYLES)
+    gait = gaits[number % len(gaits)]
+    speed_m_s = 1.8 if gait == "running" else 1.0
     person = {
         "name": f"p{number}",
         "sex": ("male", "female")[number % 2],
         "age": ages[number % 4],
-        "gait": gaits[number % len(gaits)],
-        "path": [{"at_m": [0.8 + away_m, 0.3]}, {"at_m": [0.8 + away_m, -3.0], "speed_m_s": 1.0}],
+        "gait": gait,
+        "path": [
+            {"at_m": [0.8 + away_m, 0.3 * speed_m_s]},
+            {"at_m": [0.8 + away_m, -3.0], "speed_m_s": speed_m_s},
+        ],
     }
     data: dict[str, Any] = {
         "like": SQUARE, "name": f"person_{number}", "duration_s": 5.0, "people": [person], "things": [],
