@@ -16,11 +16,12 @@ from peopleboy.sim.rendering.render_canvas import Lens
 from peopleboy.sim.rendering.renderer import RenderPass
 from peopleboy.sim.rendering.skin_canvas import see_skins
 from peopleboy.sim.rendering.skin_rays import (
-    NO_BINS,
-    SkinBins,
+    NO_HITS,
+    RAYS,
+    SkinHits,
+    differ,
     edges_of_skins,
-    hit_skin,
-    sort_into_bins,
+    hit_skins,
 )
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shape_table import ShapeTable
@@ -29,10 +30,8 @@ from peopleboy.sim.shapes.shapes import ShapeKind
 Array = NDArray[np.float64]
 Pixels = NDArray[np.int32]
 
-# [px] positions of the rays relative to the pixel's centre: the first is nearest to the pixel above, the
-# others to those on the right, on the left and below; and the next nearest ray to each of these pixels.
-_RAYS = np.array([(-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375)])
 _NEXT = (1, 3, 0, 2)
+"""Of the rays, the next nearest to the pixel to which each is nearest."""
 _BESIDE = np.array([(-1, 0), (0, 1), (0, -1), (1, 0)])  # the nearest pixels, in row and column
 
 _BOX = int(ShapeKind.BOX)
@@ -58,13 +57,15 @@ def smooth(image: NDArray[np.float32], contrast: float, seen: RenderPass, camera
         return
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
     camera_from_world = invert_pose(seen.world_from_camera)
-    poses, bins = camera_from_world @ scene.world_from_part, NO_BINS
+    poses, hits = camera_from_world @ scene.world_from_part, NO_HITS
     if scene.skins is not None:
         skins = scene.skins.table
-        edges, count = edges_of_skins(view.part, view.surface, skins.first_surface)
-        bins = sort_into_bins(skins, see_skins(scene.skins, camera_from_world), lens, edges, count)
+        edges, count = edges_of_skins(
+            image, np.float32(contrast), view.part, view.surface, skins.first_surface
+        )
+        hits = hit_skins(skins, see_skins(scene.skins, camera_from_world).points, lens, edges, count)
     _smooth(
-        image, np.float32(contrast), view.part, view.surface, view.depth, scene.table, poses, lens, bins
+        image, np.float32(contrast), view.part, view.surface, view.depth, scene.table, poses, lens, hits
     )  # fmt: skip
 
 
@@ -106,15 +107,6 @@ def _pieces_of(table: ShapeTable) -> Pixels:
 
 
 @njit(cache=True)
-def _differ(one: NDArray[np.float32], other: NDArray[np.float32], contrast: np.float32) -> bool:
-    """Return whether two values (C,) differ by more than the contrast."""
-    for c in range(len(one)):  # noqa: SIM110 (kernels have no generators)
-        if abs(one[c] - other[c]) > contrast:
-            return True
-    return False
-
-
-@njit(cache=True)
 def _mark(changes: NDArray[np.uint8], v: int, part: Pixels, surface: Pixels) -> None:
     """Mark the pixels of a row (W,) next to another surface: 1 on the right, 2 below."""
     height, width = part.shape
@@ -137,7 +129,7 @@ def _smooth(  # noqa: C901 (in one function)
     table: ShapeTable,
     camera_from_part: Array,
     lens: Lens,
-    bins: SkinBins,
+    hits: SkinHits,
 ) -> None:
     """Cast rays on both sides of each edge, and mix the surfaces that they hit.
 
@@ -173,7 +165,7 @@ def _smooth(  # noqa: C901 (in one function)
                 far_v, far_u = (v, u + 1) if way == 0 else (v + 1, u)
                 piece = _NONE if part[v, u] < 0 else piece_of[surface[v, u]]
                 far_piece = _NONE if part[far_v, far_u] < 0 else piece_of[surface[far_v, far_u]]
-                if piece == far_piece or not _differ(image[v, u], image[far_v, far_u], contrast):
+                if piece == far_piece or not differ(image[v, u], image[far_v, far_u], contrast):
                     continue
                 is_met = False
                 for end in range(2):
@@ -200,8 +192,8 @@ def _smooth(  # noqa: C901 (in one function)
                                 beside = _NONE if part[y, x] < 0 else piece_of[surface[y, x]]
                                 if beside != one:
                                     break
-                        across = (x0 + _RAYS[k, 0] - lens.centre_u) * scale
-                        down = (y0 + _RAYS[k, 1] - lens.centre_v) * scale
+                        across = (x0 + RAYS[k, 0] - lens.centre_u) * scale
+                        down = (y0 + RAYS[k, 1] - lens.centre_v) * scale
                         nearest, seen = 0.0, last if count == 1 else one
                         for j in range(count):
                             p = first if j == 0 else last
@@ -210,9 +202,9 @@ def _smooth(  # noqa: C901 (in one function)
                                 seen = one
                                 break
                             if kind[s] == _SKIN:
-                                at_u, at_v = x0 + _RAYS[k, 0], y0 + _RAYS[k, 1]
-                                here = hit_skin(bins, x0, y0, table.surface_part[p], at_u, at_v)
-                                met = p
+                                number, met = hits.number[y0, x0], p
+                                is_hit = hits.part[number, k] == table.surface_part[p]
+                                here = hits.nearness[number, k] if is_hit else 0.0
                             elif kind[s] == _BOX:
                                 if not is_known[p]:
                                     _set_face(faces[p], p - first_surface[s], size[s], pose[s])

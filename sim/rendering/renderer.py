@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -17,11 +17,11 @@ from peopleboy.sim.geometry.vectors import Point, compose, cross, dot, from_each
 from peopleboy.sim.physics.physics_engine import Physics, Rasteriser
 from peopleboy.sim.rendering.raycast import draw
 from peopleboy.sim.rendering.render_canvas import Lens, make_canvas, shade
-from peopleboy.sim.rendering.skin_canvas import draw_skins, see_skins, shade_skins, skin_bounds
+from peopleboy.sim.rendering.skin_canvas import SeenSkins, draw_skins, see_skins, shade_skins, skin_bounds
 from peopleboy.sim.rendering.view import NO_PERSON, Cover, View, count_cover, person_bits
 from peopleboy.sim.shapes.bounds import EMPTY, shape_bounds, unite
 from peopleboy.sim.shapes.shape_table import ShapeTable
-from peopleboy.sim.shapes.skins import PosedSkins, SkinTable
+from peopleboy.sim.shapes.skins import PosedSkins
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -117,21 +117,20 @@ def cast(
     canvas, bits = make_canvas(lens, _shadings(table, skins)), person_bits(person_of_part)
     camera_from_world = invert_pose(world_from_camera)
     draw(table, from_each(camera_from_world, world_from_part), hidden, bits, lens, canvas)
-    points = None
     if skins is not None:
-        points = see_skins(skins, camera_from_world)
-        draw_skins(skins.table, points, hidden, bits, lens, canvas)
+        seen = see_skins(skins, camera_from_world)
+        draw_skins(seen, hidden, bits, lens, canvas)
     shape = (lens.height, lens.width)
     part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)
     normal = np.empty((*shape, 3), np.float32)
     rotation = np.ascontiguousarray(world_from_camera[:3, :3])
     shade(table.surface_part, lens, canvas, rotation, part, depth, normal)
-    if skins is not None and points is not None:
-        shade_skins(skins, points, lens, canvas, rotation, normal)
+    if skins is not None:
+        shade_skins(seen, lens, canvas, rotation, normal)
     return View(part, depth, normal, canvas.cover, canvas.surface)
 
 
-def _shadings(table: ShapeTable, skins: "PosedSkins | SeenSkins | None") -> int:
+def _shadings(table: ShapeTable, skins: PosedSkins | None) -> int:
     """Return the number of rows of a canvas's shading."""
     return len(table.surface_part) if skins is None else skins.table.first_surface + 1
 
@@ -163,13 +162,6 @@ def rasterise(
 # Size of an unoccluded person in the image.
 
 
-class SeenSkins(NamedTuple):
-    """Skins, and their vertices (V, 3) [m] in the optical frame."""
-
-    table: SkinTable
-    points: Array
-
-
 def silhouette_bounds(
     camera: Pinhole,
     table: ShapeTable,
@@ -194,7 +186,7 @@ def silhouette_bounds(
     found = np.empty((len(parts), 4))
     _bounds(table, camera_from_part, parts, found)
     if skins is not None:
-        skin_bounds(skins.table, skins.points, parts, found)
+        skin_bounds(skins, parts, found)
     (u, v), focal = camera.centre_px, camera.focal_px
     found[found[:, 0] > found[:, 2]] = math.nan
     bounds: Array = (u, v, u, v) + focal * found
@@ -222,11 +214,11 @@ def silhouette_area(
         return 0
     u, v = camera.centre_px
     lens = Lens(camera.focal_px, u - left, v - top, right - left + 1, bottom - top + 1)
-    canvas = make_canvas(lens, _shadings(table, skins))
+    canvas = make_canvas(lens, _shadings(table, None if skins is None else skins.posed))
     bits = np.ones(len(parts), np.uint64)
     draw(table, camera_from_part, ~parts, bits, lens, canvas)
     if skins is not None:
-        draw_skins(skins.table, skins.points, ~parts, bits, lens, canvas)
+        draw_skins(skins, ~parts, bits, lens, canvas)
     return int(np.count_nonzero(canvas.cover))
 
 
@@ -355,7 +347,7 @@ class PinholeRenderer(Renderer):
         if key not in known:
             camera_from_world, skins = invert_pose(world_from_camera), None
             if scene.skins is not None:
-                skins = SeenSkins(scene.skins.table, see_skins(scene.skins, camera_from_world))
+                skins = see_skins(scene.skins, camera_from_world)
             known[key] = camera_from_world @ scene.world_from_part, skins
         return known[key]
 

@@ -7,6 +7,7 @@ clipping.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -25,32 +26,44 @@ _SLACK = 1e-9  # [px] as that of the canvas
 _NOTHING: Point = (0.0, 0.0, 0.0)
 
 
+class SeenSkins(NamedTuple):
+    """Skins in a camera's frame.
+
+    Attributes:
+        posed: the K skins with V vertices.
+        points: (V, 3) [m] vertices in the optical frame.
+        pixels: (K, 4) first column and row, and those after the last, of the pixels that each skin may
+            cover; 0 before `draw_skins` writes them.
+    """
+
+    posed: PosedSkins
+    points: Array
+    pixels: NDArray[np.int64]
+
+
 @njit(cache=True, nogil=True)
-def see_skins(posed: PosedSkins, camera_from_world: Array) -> Array:
-    """Return the vertices (V, 3) [m] in the optical frame."""
+def see_skins(posed: PosedSkins, camera_from_world: Array) -> SeenSkins:
+    """Return skins in the frame of a camera."""
     points = np.empty_like(posed.vertices)
     for v in range(len(points)):
         points[v, 0], points[v, 1], points[v, 2] = map_point(
             camera_from_world, posed.vertices[v, 0], posed.vertices[v, 1], posed.vertices[v, 2]
         )
-    return points
+    return SeenSkins(posed, points, np.zeros((len(posed.table.part_of_bone), 4), np.int64))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def draw_skins(
-    skins: SkinTable, points: Array, skip: Mask, bits: NDArray[np.uint64], lens: Lens, canvas: Canvas
-) -> None:
+def draw_skins(seen: SeenSkins, skip: Mask, bits: NDArray[np.uint64], lens: Lens, canvas: Canvas) -> None:
     """Draw all triangles except those of skipped parts.
 
     Args:
-        skins: the skins.
-        points: (V, 3) [m] vertices in the optical frame, see `see_skins`.
+        seen: the skins.
         skip: (P,) parts that are not drawn.
         bits: (P,) bits that a part's silhouette sets in the cover.
         lens: ray directions of the pixels.
         canvas: canvas to draw on.
     """
-    most = 0
+    skins, points, pixels, most = seen.posed.table, seen.points, seen.pixels, 0
     for k in range(len(skins.part_of_bone)):
         most = max(most, skins.first_vertex[k + 1] - skins.first_vertex[k])
     image = np.empty((most, 3))
@@ -58,7 +71,8 @@ def draw_skins(
     for k in range(len(skins.part_of_bone)):
         first, end = skins.first_vertex[k], skins.first_vertex[k + 1]
         near = _project(points[first:end], lens, image)
-        if near == _BEHIND or (near == _AHEAD and _is_outside(image[: end - first], lens)):
+        _cover(image[: end - first], near, lens, pixels[k])
+        if pixels[k, 0] >= pixels[k, 2] or pixels[k, 1] >= pixels[k, 3]:
             continue
         for t in range(skins.first_triangle[k], skins.first_triangle[k + 1]):
             part = skins.part[t]
@@ -93,13 +107,19 @@ def _project(points: Array, lens: Lens, image: Array) -> int:
 
 
 @njit(cache=True, nogil=True)
-def _is_outside(image: Array, lens: Lens) -> bool:
-    """Return whether all points are beyond one border of the image."""
-    left, top, right, bottom = math.inf, math.inf, -math.inf, -math.inf
-    for v in range(len(image)):
-        left, right = min(left, image[v, 0]), max(right, image[v, 0])
-        top, bottom = min(top, image[v, 1]), max(bottom, image[v, 1])
-    return right < 0.0 or bottom < 0.0 or left > lens.width - 1.0 or top > lens.height - 1.0
+def _cover(image: Array, near: int, lens: Lens, pixels: NDArray[np.int64]) -> None:
+    """Write the rectangle (4,) of pixels around all points; the whole image across the near plane."""
+    left, top, right, bottom = 0.0, 0.0, lens.width - 1.0, lens.height - 1.0
+    if near != _ACROSS:
+        least, first, most, last = math.inf, math.inf, -math.inf, -math.inf
+        for v in range(len(image) if near == _AHEAD else 0):
+            least, most = min(least, image[v, 0]), max(most, image[v, 0])
+            first, last = min(first, image[v, 1]), max(last, image[v, 1])
+        left, top = max(left, least - _SLACK), max(top, first - _SLACK)
+        right, bottom = min(right, most + _SLACK), min(bottom, last + _SLACK)
+    is_some = left <= right and top <= bottom
+    pixels[0], pixels[1] = (math.ceil(left), math.ceil(top)) if is_some else (0, 0)
+    pixels[2], pixels[3] = (math.floor(right) + 1, math.floor(bottom) + 1) if is_some else (0, 0)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -165,38 +185,26 @@ def _draw_across(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def shade_skins(
-    posed: PosedSkins,
-    points: Array,
-    lens: Lens,
-    canvas: Canvas,
-    rotation: Array,
-    normal: NDArray[np.float32],
+    seen: SeenSkins, lens: Lens, canvas: Canvas, rotation: Array, normal: NDArray[np.float32]
 ) -> None:
-    """Write the normals of skins, interpolated between their vertices; arguments as in `shade`.
-
-    With the corners a, b, c, the ray d meets the triangle at shares in the ratio of d . (b x c), d . (c x a)
-    and d . (a x b), so the normal is linear in d before it is scaled to 1.
-    """
-    skins, linear = posed.table, np.empty((3, 3))
-    for v in range(lens.height):
-        known = -1
-        for u in range(lens.width):
-            surface = canvas.surface[v, u]
-            if canvas.nearness[v, u] == 0.0 or surface < skins.first_surface:
-                continue
-            if surface != known:
-                known = surface
-                _interpolate(posed, points, surface - skins.first_surface, linear)
-            x, y = (u - lens.centre_u) / lens.focal, (v - lens.centre_v) / lens.focal
-            n = map_direction(linear, x, y)
-            d = map_direction(rotation, x, y)
-            # A smooth normal may turn away from the camera near an outline.
-            away = dot(n, d) / dot(d, d)
-            if away > 0.0:
-                n = (n[0] - away * d[0], n[1] - away * d[1], n[2] - away * d[2])
-            size = 1.0 / math.sqrt(max(dot(n, n), 1e-60))
-            for i in range(3):
-                normal[v, u, i] = n[i] * size
+    """Write the normals of drawn skins, interpolated between their vertices; arguments as in `shade`."""
+    skins, pixels = seen.posed.table, seen.pixels
+    for k in range(len(pixels)):
+        first = skins.first_surface + skins.first_triangle[k]
+        end = skins.first_surface + skins.first_triangle[k + 1]
+        for v in range(pixels[k, 1], pixels[k, 3]):
+            for u in range(pixels[k, 0], pixels[k, 2]):
+                surface = canvas.surface[v, u]
+                if first <= surface < end and canvas.nearness[v, u] > 0.0:
+                    x, y = (u - lens.centre_u) / lens.focal, (v - lens.centre_v) / lens.focal
+                    n = _normal_at(seen, surface - skins.first_surface, x, y)
+                    d = map_direction(rotation, x, y)
+                    # A smooth normal may turn away from the camera near an outline.
+                    away = max(dot(n, d) / dot(d, d), 0.0)
+                    n = (n[0] - away * d[0], n[1] - away * d[1], n[2] - away * d[2])
+                    size = 1.0 / math.sqrt(max(dot(n, n), 1e-60))
+                    for i in range(3):
+                        normal[v, u, i] = n[i] * size
 
 
 @njit(cache=True, nogil=True)
@@ -210,28 +218,36 @@ def map_direction(matrix: Array, x: float, y: float) -> Point:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _interpolate(posed: PosedSkins, points: Array, triangle: int, linear: Array) -> None:
-    """Write the matrix (3, 3) that maps rays to normals, up to their length, of one triangle."""
-    corners = posed.table.triangles[triangle]
-    a, b, c = points[corners[0]], points[corners[1]], points[corners[2]]
-    p, q, r = (a[0], a[1], a[2]), (b[0], b[1], b[2]), (c[0], c[1], c[2])
-    # The sign makes shares positive on the triangle, whose front has negative volumes towards the camera.
-    e, f, g = cross(r, q), cross(p, r), cross(q, p)
-    for i in range(3):
-        na, nb, nc = posed.normals[corners[0], i], posed.normals[corners[1], i], posed.normals[corners[2], i]
-        for j in range(3):
-            linear[i, j] = na * e[j] + nb * f[j] + nc * g[j]
+def _normal_at(seen: SeenSkins, triangle: int, x: float, y: float) -> Point:
+    """Return the normal, up to its length, where the ray (x, y, 1) meets a triangle.
+
+    With the corners a, b, c, the ray d meets it at shares in the ratio of d . (b x c), d . (c x a) and
+    d . (a x b). Swapped factors make them positive, as the front has negative volumes towards the camera.
+    """
+    corners, points, normals = seen.posed.table.triangles[triangle], seen.points, seen.posed.normals
+    a, b, c = corners[0], corners[1], corners[2]
+    p = (points[a, 0], points[a, 1], points[a, 2])
+    q = (points[b, 0], points[b, 1], points[b, 2])
+    r = (points[c, 0], points[c, 1], points[c, 2])
+    d = (x, y, 1.0)
+    e, f, g = dot(d, cross(r, q)), dot(d, cross(p, r)), dot(d, cross(q, p))
+    return (
+        e * normals[a, 0] + f * normals[b, 0] + g * normals[c, 0],
+        e * normals[a, 1] + f * normals[b, 1] + g * normals[c, 1],
+        e * normals[a, 2] + f * normals[b, 2] + g * normals[c, 2],
+    )
 
 
 # Outlines.
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def skin_bounds(skins: SkinTable, points: Array, parts: Mask, found: Array) -> None:
+def skin_bounds(seen: SeenSkins, parts: Mask, found: Array) -> None:
     """Extend bounds (N, 4), as in `shapes.bounds`, by the triangles of sets of parts (N, P).
 
     They are exact for vertices beyond the near plane; edges across it are cut there.
     """
+    skins, points = seen.posed.table, seen.points
     for k in range(len(skins.part_of_bone)):
         first, end = skins.first_vertex[k], skins.first_vertex[k + 1]
         chosen = np.zeros(len(parts), np.bool_)

@@ -1,7 +1,7 @@
-"""Single rays against skins, next to the edges of an image (numba kernels)."""
+"""Four rays in each pixel next to an edge, against skins (numba kernels)."""
 
 import math
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -12,47 +12,54 @@ from peopleboy.sim.shapes.bounds import NEAR_M
 from peopleboy.sim.shapes.skins import SkinTable
 
 Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 Pixels = NDArray[np.int32]
+Values = NDArray[np.float32]
 
 _SLACK_PX2 = 1e-9  # twice the area by which a ray may miss a triangle, so that no gap opens between two
 
 
-class SkinBins(NamedTuple):
-    """The triangles that may be met by rays within some pixels of an image.
+RAYS: Final = np.array([(-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375)])
+"""[px] Positions of the rays, relative to the pixel's centre.
+
+The first is nearest to the pixel above, the others to those on the right, on the left and below.
+"""
+
+
+class SkinHits(NamedTuple):
+    """What rays in some pixels of an image hit first of all skins.
 
     Attributes:
-        bin: (H, W) number of each pixel's bin, -1 where no rays are cast.
-        first: (N + 1,) where each bin's triangles begin in `among`.
-        among: numbers of triangles.
-        image: (V, 3) column, row [px] and nearness [1/m] of the vertices.
-        corners: (T, 3) vertices of the triangles.
-        part: (T,) parts of the triangles.
+        number: (H, W) number of each pixel, -1 where no rays are cast.
+        nearness: (N, 4) [1/m] of what each ray hits, 0 for a miss.
+        part: (N, 4) part that it hits, -1 for none.
     """
 
-    bin: Pixels
-    first: Pixels
-    among: Pixels
-    image: Array
-    corners: Numbers
+    number: Pixels
+    nearness: Array
     part: Pixels
 
 
-NO_BINS = SkinBins(
-    np.full((1, 1), -1, np.int32),
-    np.zeros(1, np.int32),
-    np.zeros(0, np.int32),
-    np.zeros((0, 3)),
-    np.zeros((0, 3), np.int64),
-    np.zeros(0, np.int32),
-)
+NO_HITS = SkinHits(np.full((1, 1), -1, np.int32), np.zeros((0, 4)), np.zeros((0, 4), np.int32))
 
 
 @njit(cache=True, nogil=True)
-def edges_of_skins(part: Pixels, surface: Pixels, first: int) -> tuple[Pixels, int]:
-    """Number the pixels next to those of another part, if either is a skin's.
+def differ(one: Values, other: Values, contrast: np.float32) -> bool:
+    """Return whether two values (C,) differ by more than the contrast."""
+    for c in range(len(one)):  # noqa: SIM110 (kernels have no generators)
+        if abs(one[c] - other[c]) > contrast:
+            return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def edges_of_skins(
+    image: Values, contrast: np.float32, part: Pixels, surface: Pixels, first: int
+) -> tuple[Pixels, int]:
+    """Number the pixels next to those of another part with another value, if either is a skin's.
 
     Args:
+        image: (H, W, C) the image.
+        contrast: difference from which on values differ.
         part: (H, W) parts seen.
         surface: (H, W) surfaces seen.
         first: number of the first surface that is a skin's; so are all after it.
@@ -69,10 +76,13 @@ def edges_of_skins(part: Pixels, surface: Pixels, first: int) -> tuple[Pixels, i
             if part[v, right] == p and part[below, u] == p:
                 continue
             is_skin = p >= 0 and surface[v, u] >= first
-            if part[v, right] != p and (is_skin or (part[v, right] >= 0 and surface[v, right] >= first)):
-                found[v, u] = found[v, right] = 0
-            if part[below, u] != p and (is_skin or (part[below, u] >= 0 and surface[below, u] >= first)):
-                found[v, u] = found[below, u] = 0
+            for y, x in ((v, right), (below, u)):
+                if (
+                    part[y, x] != p
+                    and (is_skin or (part[y, x] >= 0 and surface[y, x] >= first))
+                    and differ(image[v, u], image[y, x], contrast)
+                ):
+                    found[v, u] = found[y, x] = 0
     count = 0
     for v in range(height):
         for u in range(width):
@@ -83,16 +93,14 @@ def edges_of_skins(part: Pixels, surface: Pixels, first: int) -> tuple[Pixels, i
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def sort_into_bins(  # noqa: C901 (in one function, as calls with arrays take long)
-    skins: SkinTable, points: Array, lens: Lens, bins: Pixels, count: int
-) -> SkinBins:
-    """Find the triangles whose front may be met within each of some pixels.
+def hit_skins(skins: SkinTable, points: Array, lens: Lens, number: Pixels, count: int) -> SkinHits:
+    """Cast the rays of some pixels; only the fronts of triangles are hit.
 
     Args:
         skins: the skins.
         points: (V, 3) [m] their vertices in the optical frame.
         lens: the camera.
-        bins: (H, W) numbers of the pixels, as returned by `edges_of_skins`.
+        number: (H, W) numbers of the pixels, as returned by `edges_of_skins`.
         count: how many pixels there are.
     """
     image = np.empty_like(points)
@@ -101,69 +109,36 @@ def sort_into_bins(  # noqa: C901 (in one function, as calls with arrays take lo
         image[v, 0] = lens.centre_u + lens.focal * points[v, 0] * nearness
         image[v, 1] = lens.centre_v + lens.focal * points[v, 1] * nearness
         image[v, 2] = nearness
-    corners, first = skins.triangles, np.zeros(count + 1, np.int32)
-    windows, found = np.empty((len(corners), 5), np.int32), 0
-    for t in range(len(corners)):
-        a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
+    hits = SkinHits(number, np.zeros((count, 4)), np.full((count, 4), np.int32(-1)))
+    for t in range(len(skins.triangles)):
+        a, b, c = skins.triangles[t, 0], skins.triangles[t, 1], skins.triangles[t, 2]
         ax, ay, bx, by, cx, cy = image[a, 0], image[a, 1], image[b, 0], image[b, 1], image[c, 0], image[c, 1]
-        left, right = _pixel(min(ax, bx, cx), lens.width), _pixel(max(ax, bx, cx), lens.width)
-        top, bottom = _pixel(min(ay, by, cy), lens.height), _pixel(max(ay, by, cy), lens.height)
+        # Twice the area, positive from the front as rows go down.
+        area = (cx - ax) * (by - ay) - (bx - ax) * (cy - ay)
         p, q, r = image[a, 2], image[b, 2], image[c, 2]
         is_ahead = (min(p, q, r) > 0.0) & (max(p, q, r) * NEAR_M <= 1.0)
-        if not is_ahead or (cx - ax) * (by - ay) - (bx - ax) * (cy - ay) <= 0.0:
+        if not (is_ahead and area > 0.0):
             continue
-        entered = 0
+        left, right = _pixel(min(ax, bx, cx), lens.width), _pixel(max(ax, bx, cx), lens.width)
+        top, bottom = _pixel(min(ay, by, cy), lens.height), _pixel(max(ay, by, cy), lens.height)
+        p, q, r = p / area, q / area, r / area
         for y in range(top, bottom + 1):
             for x in range(left, right + 1):
-                place = bins[y, x]
-                if place >= 0:
-                    first[place + 1] += np.int32(1)
-                    entered += 1
-        if entered > 0:
-            windows[found, 0], windows[found, 1], windows[found, 2] = t, left, right
-            windows[found, 3], windows[found, 4] = top, bottom
-            found += 1
-    for i in range(count):
-        first[i + 1] += first[i]
-    among, free = np.empty(first[count], np.int32), first.copy()
-    for i in range(found):
-        for y in range(windows[i, 3], windows[i, 4] + 1):
-            for x in range(windows[i, 1], windows[i, 2] + 1):
-                place = bins[y, x]
-                if place >= 0:
-                    among[free[place]] = windows[i, 0]
-                    free[place] += np.int32(1)
-    return SkinBins(bins, first, among, image, corners, skins.part)
+                if number[y, x] < 0:
+                    continue
+                nearest, part = hits.nearness[number[y, x]], hits.part[number[y, x]]
+                for k in range(4):
+                    u, v = x + RAYS[k, 0], y + RAYS[k, 1]
+                    of_a = (cx - u) * (by - v) - (bx - u) * (cy - v)
+                    of_b = (ax - u) * (cy - v) - (cx - u) * (ay - v)
+                    of_c = (bx - u) * (ay - v) - (ax - u) * (by - v)
+                    here = of_a * p + of_b * q + of_c * r
+                    if min(of_a, of_b, of_c) >= -_SLACK_PX2 and here > nearest[k]:
+                        nearest[k], part[k] = here, skins.part[t]
+    return hits
 
 
 @njit(cache=True, nogil=True)
 def _pixel(at: float, size: int) -> int:
     """Return the number of the pixel around a position [px], that at the border for positions outside."""
     return math.floor(min(max(at, 0.0), size - 1.0) + 0.5)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def hit_skin(bins: SkinBins, x: int, y: int, part: int, u: float, v: float) -> float:
-    """Return the nearness [1/m] at which a ray within a pixel meets a part of a skin, 0 for a miss.
-
-    Args:
-        bins: the triangles by pixel.
-        x: column of the pixel, which has a bin.
-        y: row of the pixel.
-        part: number of the part.
-        u: column of the ray [px].
-        v: row of the ray [px].
-    """
-    nearest, own, image = 0.0, bins.bin[y, x], bins.image
-    for i in range(bins.first[own], bins.first[own + 1]):
-        t = bins.among[i]
-        if bins.part[t] != part:
-            continue
-        a, b, c = bins.corners[t, 0], bins.corners[t, 1], bins.corners[t, 2]
-        ax, ay, bx, by = image[a, 0] - u, image[a, 1] - v, image[b, 0] - u, image[b, 1] - v
-        cx, cy = image[c, 0] - u, image[c, 1] - v
-        of_a, of_b, of_c = cx * by - bx * cy, ax * cy - cx * ay, bx * ay - ax * by
-        if min(of_a, of_b, of_c) >= -_SLACK_PX2:
-            mixed = of_a * image[a, 2] + of_b * image[b, 2] + of_c * image[c, 2]
-            nearest = max(nearest, mixed / (of_a + of_b + of_c))
-    return nearest
