@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from docs.generate.markdown import table
 from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES
-from peopleboy.sim.people.body.manner import HOLDS, SPREADS
 from peopleboy.sim.people.body.outfit import CARRIED
+from peopleboy.sim.people.motion.manner import HOLDS, SPREADS
 
 
 def distribution() -> str:

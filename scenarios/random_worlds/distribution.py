@@ -8,8 +8,8 @@ from typing import Any, Final, get_args
 import numpy as np
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.sim.people.body.gait_styles import GaitName
 from peopleboy.sim.people.equipment import Equipment
+from peopleboy.sim.people.motion.gait_styles import GaitName
 from peopleboy.wording import hint
 
 

@@ -10,7 +10,7 @@ from numba import njit
 from peopleboy.sim.batch.drive import BatchWalks, JoinedWorlds
 from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.body.body_placement import carry, put_on_floor
-from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
+from peopleboy.sim.people.motion.stance import STANCE, Builds, Stances, hold, move_limbs
 from peopleboy.sim.people.person import pace_m_s
 from peopleboy.sim.people.walking.script import Records, join_records
 from peopleboy.sim.physics.kinematic import Kinematic

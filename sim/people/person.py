@@ -31,9 +31,6 @@ from peopleboy.sim.people.body.body_shapes import (
     support_points,
 )
 from peopleboy.sim.people.body.clothes import ROOM_C, dress
-from peopleboy.sim.people.body.gait import Gait, walking_gait
-from peopleboy.sim.people.body.gait_styles import GAIT_STYLES
-from peopleboy.sim.people.body.manner import USUAL, Hold, Manner, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
 from peopleboy.sim.people.body.skeleton import (
     BONE_INDEX,
@@ -45,7 +42,6 @@ from peopleboy.sim.people.body.skeleton import (
     joint_points,
 )
 from peopleboy.sim.people.body.skin import BodyPlan, dress_body
-from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
 from peopleboy.sim.people.conducts import ConductSituation, Mind
 from peopleboy.sim.people.equipment import (
     EQUIPMENT_HOLDS,
@@ -54,6 +50,10 @@ from peopleboy.sim.people.equipment import (
     find_grip,
     make_equipment,
 )
+from peopleboy.sim.people.motion.gait import Gait, walking_gait
+from peopleboy.sim.people.motion.gait_styles import GAIT_STYLES
+from peopleboy.sim.people.motion.manner import USUAL, Hold, Manner, held_arms
+from peopleboy.sim.people.motion.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
 from peopleboy.sim.people.person_config import Arms, PersonConfig
 from peopleboy.sim.people.riding import riding_gait, riding_supports
 from peopleboy.sim.people.walking.social_force import PlanarState

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.body_placement import turn_arm
 from peopleboy.sim.people.body.body_shapes import SIDES, SUPPORTS
-from peopleboy.sim.people.body.gait import AMPLITUDES, Gait
 from peopleboy.sim.people.body.skeleton import (
     BONE_INDEX,
     BONES,
@@ -18,8 +17,9 @@ from peopleboy.sim.people.body.skeleton import (
     lateral,
     standing_rotations,
 )
-from peopleboy.sim.people.body.steps import PHASES, bend_leg, leg_lengths
 from peopleboy.sim.people.equipment import SEAT_M, Equipment, bicycle_size
+from peopleboy.sim.people.motion.gait import AMPLITUDES, Gait
+from peopleboy.sim.people.motion.steps import PHASES, bend_leg, leg_lengths
 
 Array = NDArray[np.float64]
 

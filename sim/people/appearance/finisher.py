@@ -13,8 +13,8 @@ from peopleboy.sim.people.appearance.textures import Mesh, crumple, make_mesh
 from peopleboy.sim.people.appearance.traits import draw_traits
 from peopleboy.sim.people.body.body_shapes import BAG_PART, PartGeometry
 from peopleboy.sim.people.body.clothes import ROOM_C, Garment
-from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.outfit import Outfit, draw_outfit
+from peopleboy.sim.people.motion.manner import Manner, draw_manner
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.shapes.materials import COLOURS, Finish, Material, Rgb
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind

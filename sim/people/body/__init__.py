@@ -1,1 +1,1 @@
-"""One person's body: bones, shapes, clothes, postures and gait."""
+"""One person's body: bones, shapes, skin and clothes."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import fma, remainder
 from peopleboy.sim.people.body.skeleton import DOWN, Posture, change_times_s
-from peopleboy.sim.people.body.stance import POSTURES
+from peopleboy.sim.people.motion.stance import POSTURES
 from peopleboy.sim.people.walking.script import (
     ABSENT,
     NOTHING,

@@ -14,7 +14,7 @@ from peopleboy.scenarios.files.library import LIBRARY
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.sim.cameras.sensors import Image
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Pinhole
-from peopleboy.sim.people.body.gait_styles import GAIT_STYLES
+from peopleboy.sim.people.motion.gait_styles import GAIT_STYLES
 from peopleboy.sim.people.person_config import BodyShape
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
-from peopleboy.sim.people.body.manner import Manner
+from peopleboy.sim.people.motion.manner import Manner
 
 GaitName = Literal["usual", "strolling", "brisk", "old", "heavy", "shuffling", "running"]
 

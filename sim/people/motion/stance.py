@@ -8,7 +8,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.body.gait import amplitude_of, gait_pose
 from peopleboy.sim.people.body.skeleton import (
     ARM_BONES,
     BONE_INDEX,
@@ -20,6 +19,7 @@ from peopleboy.sim.people.body.skeleton import (
     pelvis_shift,
     posture_rotations,
 )
+from peopleboy.sim.people.motion.gait import amplitude_of, gait_pose
 
 # Range and rate of head turning, and the share of each bone in it: our choice.
 _FARTHEST_RAD: Final = math.radians(100.0)

@@ -10,10 +10,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.body_shapes import SIDES
-from peopleboy.sim.people.body.manner import USUAL, Manner
-from peopleboy.sim.people.body.motion_clips import load_motion_clip
 from peopleboy.sim.people.body.skeleton import BONES
-from peopleboy.sim.people.body.steps import PHASES, RUNNING_AMPLITUDE, Steps, bend_leg
+from peopleboy.sim.people.motion.manner import USUAL, Manner
+from peopleboy.sim.people.motion.motion_clips import load_motion_clip
+from peopleboy.sim.people.motion.steps import PHASES, RUNNING_AMPLITUDE, Steps, bend_leg
 
 Array = NDArray[np.float64]
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from peopleboy.sim.people.body.motion_clips import ClipName, fourier_basis, load_motion_clip
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES
+from peopleboy.sim.people.motion.motion_clips import ClipName, fourier_basis, load_motion_clip
 from peopleboy.sim.physics.urdf import data_folder
 
 CLIPS = Path("data", "motions")

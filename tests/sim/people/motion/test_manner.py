@@ -6,8 +6,6 @@ from peopleboy.random_streams import stream
 from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.anthropometry import measure
 from peopleboy.sim.people.body.body_shapes import sole_points
-from peopleboy.sim.people.body.gait import Gait, amplitude_of, gait_pose, walking_gait
-from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.skeleton import (
     BONE_INDEX,
     BONES,
@@ -17,6 +15,8 @@ from peopleboy.sim.people.body.skeleton import (
     joint_offsets,
     mirror,
 )
+from peopleboy.sim.people.motion.gait import Gait, amplitude_of, gait_pose, walking_gait
+from peopleboy.sim.people.motion.manner import Manner, draw_manner
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from tests.helpers.worlds.individuals import make_individual
