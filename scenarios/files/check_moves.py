@@ -9,7 +9,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput, Key
 from peopleboy.scenarios.files.people import PersonSpec
-from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.walking.walker import ALONE, Walker
 from peopleboy.sim.places.extent import BoxSet, boxes_of, overlaps
 from peopleboy.sim.places.moving import Action, Mover

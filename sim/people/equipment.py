@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.body_placement import put_on_floor
 from peopleboy.sim.people.body.body_shapes import FLOOR, FRAME_INDEX, PartGeometry, box, capsule
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, standing_rotations
+from peopleboy.sim.people.body.postures import standing_rotations
+from peopleboy.sim.people.body.skeleton import BONE_INDEX
 from peopleboy.sim.people.motion.manner import Hold, Manner, bearing, held_arms
 from peopleboy.sim.shapes.materials import COLOURS, Material, Rgb
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector

@@ -32,15 +32,8 @@ from peopleboy.sim.people.body.body_shapes import (
 )
 from peopleboy.sim.people.body.clothes import ROOM_C, dress
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
-from peopleboy.sim.people.body.skeleton import (
-    BONE_INDEX,
-    BONES,
-    DOWN,
-    LOW,
-    Posture,
-    joint_offsets,
-    joint_points,
-)
+from peopleboy.sim.people.body.postures import DOWN, LOW, Posture
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets, joint_points
 from peopleboy.sim.people.body.skin import BodyPlan, dress_body
 from peopleboy.sim.people.conducts import ConductSituation, Mind
 from peopleboy.sim.people.equipment import (

@@ -13,7 +13,7 @@ from peopleboy.settings import Name, Point, Seconds, check_limits, word_or_list
 from peopleboy.sim.people.body.anthropometry import Build, Sex
 from peopleboy.sim.people.body.bodies import Age
 from peopleboy.sim.people.body.clothes import Clothes
-from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.equipment import RIDDEN, Equipment
 from peopleboy.sim.people.motion.gait_styles import GaitName
 

@@ -9,14 +9,8 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.body_placement import turn_arm
 from peopleboy.sim.people.body.body_shapes import SIDES, SUPPORTS
-from peopleboy.sim.people.body.skeleton import (
-    BONE_INDEX,
-    BONES,
-    PARENT_INDEX,
-    chain,
-    lateral,
-    standing_rotations,
-)
+from peopleboy.sim.people.body.postures import standing_rotations
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, PARENT_INDEX, chain, lateral
 from peopleboy.sim.people.equipment import SEAT_M, Equipment, bicycle_size
 from peopleboy.sim.people.motion.gait import AMPLITUDES, Gait
 from peopleboy.sim.people.motion.steps import PHASES, bend_leg, leg_lengths

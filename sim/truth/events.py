@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.shapes.shapes import Vector
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, ThingTruth, Truth
 

@@ -11,16 +11,14 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.vectors import fma, multiply
 from peopleboy.sim.people.body.anthropometry import FOREARM_LENGTH, HAND_LENGTH, UPPER_ARM_LENGTH
 from peopleboy.sim.people.body.body_shapes import SUPPORTS
+from peopleboy.sim.people.body.postures import Posture, pelvis_shift, posture_rotations
 from peopleboy.sim.people.body.skeleton import (
     BONE_INDEX,
     BONES,
     PARENT_INDEX,
-    Posture,
     chain,
     lateral,
-    pelvis_shift,
     point_along,
-    posture_rotations,
     turned_back,
 )
 

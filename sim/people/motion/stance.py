@@ -8,10 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.body.skeleton import (
-    ARM_BONES,
-    BONE_INDEX,
-    BONES,
+from peopleboy.sim.people.body.postures import (
     WAVE_HZ,
     WAVE_RAD,
     Posture,
@@ -19,6 +16,7 @@ from peopleboy.sim.people.body.skeleton import (
     pelvis_shift,
     posture_rotations,
 )
+from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES
 from peopleboy.sim.people.motion.gait import amplitude_of, gait_pose
 
 # Range and rate of head turning, and the share of each bone in it: our choice.

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.body_shapes import SIDES
-from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, lateral, standing_rotations
+from peopleboy.sim.people.body.postures import standing_rotations
+from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, lateral
 from peopleboy.sim.people.motion.manner import Manner, bearing
 from peopleboy.sim.people.motion.motion_clips import CLIP_LEG_M, MotionClip, fourier_basis
 

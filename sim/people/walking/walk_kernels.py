@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import fma, remainder
-from peopleboy.sim.people.body.skeleton import DOWN, Posture, change_times_s
+from peopleboy.sim.people.body.postures import DOWN, Posture, change_times_s
 from peopleboy.sim.people.motion.stance import POSTURES
 from peopleboy.sim.people.walking.script import (
     ABSENT,

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.motion.stance import POSTURES
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.people.walking.script import (

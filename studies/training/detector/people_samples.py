@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.body import skeleton
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.studies.training.detector.augmentation import augment, cut_off
 from peopleboy.studies.training.detector.clutter import clutter, overlay
 from peopleboy.studies.training.detector.electronics import simulate_electronics
@@ -39,14 +39,14 @@ CANVAS: Final = (192, 256)
 """Rows and columns of the training images."""
 
 _CLASSES: Final = {
-    skeleton.Posture.SITTING: TrackPosture.SITTING,
-    skeleton.Posture.BENDING: TrackPosture.BENDING,
-    skeleton.Posture.CROUCHING: TrackPosture.CROUCHING,
-    skeleton.Posture.LYING: TrackPosture.LYING,
-    skeleton.Posture.FALLEN: TrackPosture.LYING,
+    Posture.SITTING: TrackPosture.SITTING,
+    Posture.BENDING: TrackPosture.BENDING,
+    Posture.CROUCHING: TrackPosture.CROUCHING,
+    Posture.LYING: TrackPosture.LYING,
+    Posture.FALLEN: TrackPosture.LYING,
 }
 POSTURE_OF: Final = np.array(
-    [list(TrackPosture).index(_CLASSES.get(posture, TrackPosture.UPRIGHT)) for posture in skeleton.Posture]
+    [list(TrackPosture).index(_CLASSES.get(posture, TrackPosture.UPRIGHT)) for posture in Posture]
 )
 """(9,) number of the recognised posture for each posture of a simulated person."""
 

@@ -13,7 +13,7 @@ from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import calibrations_of
-from peopleboy.sim.people.body.skeleton import LOW, Posture
+from peopleboy.sim.people.body.postures import LOW, Posture
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.studies.training.detector.worlds import world_of
 from peopleboy.studies.training.samples import Arrays, SampleTask

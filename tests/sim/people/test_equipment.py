@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.equipment import RIDDEN, Equipment, bicycle_size
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.world import SimulatedWorld

@@ -13,7 +13,7 @@ from peopleboy.sim.people.body.clothes import (
     dress,
     random_clothes,
 )
-from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.shapes.materials import COLOURS, PatternKind
 from tests.helpers.calls.refused import refused

@@ -7,7 +7,8 @@ from peopleboy.sim.people.body import anthropometry as table
 from peopleboy.sim.people.body.anthropometry import MEAN_GIRTHS, measure
 from peopleboy.sim.people.body.body_shapes import TORSO_PARTS
 from peopleboy.sim.people.body.clothes import Clothes
-from peopleboy.sim.people.body.skeleton import JOINT_NAMES, PARENTS, Posture, joint_offsets
+from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.body.skeleton import JOINT_NAMES, PARENTS, joint_offsets
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES
 from peopleboy.sim.people.person_config import Waypoint
 from tests.helpers.worlds.person_shapes import person_depth, person_points

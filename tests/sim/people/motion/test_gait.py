@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.people.body.body_shapes import sole_points
-from peopleboy.sim.people.body.skeleton import Posture, mirror
+from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.body.skeleton import mirror
 from peopleboy.sim.people.motion.gait_styles import GAIT_STYLES
 from peopleboy.sim.people.motion.motion_clips import fourier_basis, load_motion_clip
 from peopleboy.sim.people.person_config import Waypoint

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.person_config import Waypoint
 from peopleboy.sim.people.walking.path import CORNER_CUT_M, abreast, route
 from peopleboy.sim.people.walking.script import TURN_RATE_RAD_S

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.geometry.vectors import remainder
-from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.crowd import those_present
 from peopleboy.sim.people.person_config import Reaction, Waypoint
 from peopleboy.sim.people.walking.script import WALK, is_scripted, join_records, join_scripts
