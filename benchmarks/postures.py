@@ -16,7 +16,7 @@ from benchmarks import call
 from benchmarks.compare import print_table, rows_of, update_results
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.sim.people.body import skeleton
+from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.studies.training.detector.people_samples import POSTURE_OF
 from peopleboy.studies.training.detector.worlds import ordinary_world
@@ -32,7 +32,7 @@ COLUMNS: Final[Mapping[str, str]] = {
 }  # fmt: skip
 """Columns of the table, with the format of their values."""
 
-_NUMBER_OF: Final = {str(posture): POSTURE_OF[k] for k, posture in enumerate(skeleton.Posture)}
+_NUMBER_OF: Final = {str(posture): POSTURE_OF[k] for k, posture in enumerate(Posture)}
 _ON_PERSON: Final = 0.5  # IoU
 _VISIBLE: Final = 0.5  # least visible share of a person who counts
 _SHORTEST_PX: Final = 12.0  # least height of the box of a person who counts

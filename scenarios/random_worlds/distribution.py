@@ -118,7 +118,7 @@ SHARES: Final[Mapping[str, Mapping[str, float]]] = {
     "command": {"straight": 0.4, "curve": 0.35, "turn": 0.15, "stop": 0.1},
     "posture": {
         "standing": 0.6, "sitting": 0.1, "bending": 0.1, "arms_crossed": 0.1, "arms_raised": 0.1,
-        "crouching": 0.0, "lying": 0.0, "fallen": 0.0,
+        "crouching": 0.0, "lying": 0.0, "fallen": 0.0, "kneeling": 0.0,
     },
     "arms": {
         "swinging": 0.85, "crossed": 0.1, "raised": 0.05,

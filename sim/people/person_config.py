@@ -199,7 +199,7 @@ class Waypoint:
             "floor, with the feet near the point and the head behind; `fallen` is on the front, after a "
             "fall of 0.6 s; `arms_raised` has both arms raised; `arms_crossed` has the arms crossed in "
             "front of the chest; `calling` has one arm raised, which waves until the robot is "
-            "within `until_robot_within_m`"
+            "within `until_robot_within_m`; `kneeling` is on the right knee"
         ),
     ] = Posture.STANDING
 

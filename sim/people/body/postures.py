@@ -28,6 +28,7 @@ class Posture(StrEnum):
     ARMS_RAISED = "arms_raised"
     ARMS_CROSSED = "arms_crossed"
     CALLING = "calling"
+    KNEELING = "kneeling"
 
 
 def _pitch(degrees: float) -> Vector:
@@ -105,6 +106,20 @@ _CHANGES: dict[Posture, dict[str, Vector]] = {
         "right_upper_arm": point_along((0.02, -0.11, -1.0)),
         "right_forearm": point_along((0.16, 0.05, -1.0)),
     },
+    # On the right knee, with the hands on the left one.
+    Posture.KNEELING: {
+        "pelvis": _pitch(6.0),
+        "chest": _pitch(4.0),
+        "left_thigh": (math.radians(6.0), math.radians(-92.0), 0.0),
+        "left_shin": _pitch(88.0),
+        "right_thigh": (math.radians(-2.0), math.radians(-2.0), 0.0),
+        "right_shin": _pitch(84.0),
+        "right_foot": _pitch(72.0),
+        "left_upper_arm": point_along((0.42, 0.10, -1.0)),
+        "left_forearm": point_along((0.70, -0.25, -0.60)),
+        "right_upper_arm": point_along((0.52, -0.06, -1.0)),
+        "right_forearm": point_along((0.70, 0.50, -0.45)),
+    },
 }
 RISE_S = 0.6  # time to sit down, to rise, or to change most other postures
 _SLOW_S = 2.0  # time to lie down, and to get up from the floor
@@ -115,11 +130,12 @@ _PELVIS_SHIFT = {
     Posture.SITTING: -0.13,
     Posture.BENDING: -0.075,
     Posture.CROUCHING: -0.08,
+    Posture.KNEELING: -0.06,
     Posture.LYING: -0.45,
     Posture.FALLEN: 0.45,
 }
 _ON_THE_FLOOR = (Posture.LYING, Posture.FALLEN)
-DOWN = (Posture.SITTING, *_ON_THE_FLOOR)
+DOWN = (Posture.SITTING, Posture.KNEELING, *_ON_THE_FLOOR)
 """Postures in which a person neither turns nor stoops."""
 LOW = (Posture.BENDING, Posture.CROUCHING, *DOWN)
 """Postures in which a person is not upright."""
@@ -143,13 +159,16 @@ def standing_rotations() -> Array:
 
 
 def posture_rotations(posture: Posture) -> Array:
-    """Return (17, 3) [rad] rotation vectors of the bones in a posture; feet stay level on the floor."""
-    rotations = _both_sides({**_STANDING, **_CHANGES[posture]})
+    """Return (17, 3) [rad] rotation vectors of the bones in a posture; feet on the floor are level."""
+    changes = _CHANGES[posture]
+    rotations = _both_sides({**_STANDING, **changes})
     if posture is Posture.ARMS_CROSSED:
         _cross_forearms(rotations)
     if posture in _ON_THE_FLOOR:
         return rotations
     for side in ("left", "right"):
+        if f"{side}_foot" in changes:
+            continue
         leg = [BONE_INDEX[f"{side}_{bone}"] for bone in ("thigh", "shin")]
         rotations[BONE_INDEX[f"{side}_foot"], 1] = -rotations[[0, *leg], 1].sum()
     return rotations

@@ -42,13 +42,14 @@ _CLASSES: Final = {
     Posture.SITTING: TrackPosture.SITTING,
     Posture.BENDING: TrackPosture.BENDING,
     Posture.CROUCHING: TrackPosture.CROUCHING,
+    Posture.KNEELING: TrackPosture.CROUCHING,
     Posture.LYING: TrackPosture.LYING,
     Posture.FALLEN: TrackPosture.LYING,
 }
 POSTURE_OF: Final = np.array(
     [list(TrackPosture).index(_CLASSES.get(posture, TrackPosture.UPRIGHT)) for posture in Posture]
 )
-"""(9,) number of the recognised posture for each posture of a simulated person."""
+"""(10,) number of the recognised posture for each posture of a simulated person."""
 
 _STILL: Final = 0.3  # share of images without change
 _SHAKEN: Final = 0.25  # share of images whose change contains that of a camera motion

@@ -32,8 +32,8 @@ _SHARES: Final[Mapping[str, Mapping[str, float]]] = {
 _ODDS: Final[Mapping[str, float]] = {"begins_in_view": 0.9, "enters_later": 0.1}
 _PEOPLE: Final[Mapping[str, Mapping[str, float]]] = {
     "posture": {
-        "standing": 0.3, "sitting": 0.15, "bending": 0.14, "crouching": 0.14, "lying": 0.08, "fallen": 0.07,
-        "arms_crossed": 0.06, "arms_raised": 0.06,
+        "standing": 0.3, "sitting": 0.15, "bending": 0.14, "crouching": 0.1, "lying": 0.08, "fallen": 0.07,
+        "arms_crossed": 0.06, "arms_raised": 0.06, "kneeling": 0.04,
     },
     "arms": {
         "swinging": 0.8, "crossed": 0.06, "raised": 0.04, "in_pockets": 0.03, "telephone": 0.03,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.runs.exported import SCENE
 
 MOST = 6
+_BODY = re.compile(r"\.people\.(body|motion)\.")
 MARK = 1.612345678
 """A value that nothing else has."""
 
@@ -47,8 +49,8 @@ def modules_on_the_way(path: Path) -> set[str]:
     world.close()
     # The limits of all settings are checked in one module, whichever the setting is.
     names.discard("peopleboy.settings")
-    # A body is made of its height in several modules, which all are the place where it is used.
-    return {"body" if ".people.body." in name else name for name in names}
+    # A body and its gait are made of its height in several modules, which all are the place where it is used.
+    return {"body" if _BODY.search(name) else name for name in names}
 
 
 @pytest.mark.parametrize(

@@ -156,6 +156,19 @@ def test_a_crouching_person_stays_above_the_feet_and_is_as_low_as_a_seated_one()
     assert feet[:, 0].min() < trunk < feet[:, 0].max()
 
 
+@pytest.mark.parametrize(("sex", "build"), BODIES)
+def test_a_kneeling_person_rests_on_one_knee_and_the_other_foot(sex, build):
+    person = in_posture(Posture.KNEELING, sex=sex, build=build, height_m=1.7, clothes=BARE)
+    knee, foot = (person_points(person, [part])[:, 2].min() for part in ("right_shin", "left_foot"))
+    assert foot == pytest.approx(0.0, abs=0.02)
+    assert knee == pytest.approx(0.0, abs=0.05)
+    assert person_points(person)[:, 2].min() > -0.04
+    assert 0.65 < person_points(person)[:, 2].max() / 1.7 < 0.8
+    joints = dict(zip(JOINT_NAMES, person.joints(), strict=True))
+    assert joints["left_knee"][2] > joints["right_knee"][2] + 0.3
+    assert joints["right_ankle"][0] < joints["right_knee"][0] - 0.3
+
+
 @pytest.mark.parametrize("posture", [Posture.LYING, Posture.FALLEN])
 @pytest.mark.parametrize(("sex", "build"), BODIES)
 def test_a_person_on_the_floor_rests_on_it_at_full_length(posture, sex, build):
