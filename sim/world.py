@@ -295,9 +295,9 @@ class SimulatedWorld:
         ]
         number = {key.name: part for part, key in enumerate(keys)}
         skins = [
-            (person.skin, [number[key] for key in person.part_keys])
+            (person.model.skin, [number[key] for key in person.model.part_keys])
             for person in self.crowd.people
-            if person.skin is not None
+            if person.model.skin is not None
         ]
         self.table, self._skins = join_skins(make_shape_table(physics.visual_shapes()), skins)
         paintings = paint_place(config.place, config.seed) if config.detail == "full" else {}

@@ -40,7 +40,7 @@ from peopleboy.scenarios.run_folder.run_files import truth_files
 from peopleboy.scenarios.run_folder.run_tables import Row, truth_rows
 from peopleboy.sim.cameras.kinds import Stored, kind_of
 from peopleboy.sim.geometry.pinhole import CameraGeometry
-from peopleboy.sim.people.person import PART_CLASSES
+from peopleboy.sim.people.body_model import PART_CLASSES
 from peopleboy.sim.truth.truth import Box, Truth
 
 Play = Callable[[FinishedRun], Iterator[Tick]]

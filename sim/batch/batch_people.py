@@ -55,7 +55,7 @@ class BatchLimbs:
             own = slice(q, q + 1)
             person.rebind(self._stances[own], Builds._make(array[own] for array in self._builds))
         self._handle_things = any(world.config.place.movers for world in worlds)
-        gaits = [person.gait for person in self._people]
+        gaits = [person.model.gait for person in self._people]
         self._unit_stride_m = np.array([gait.unit_stride_m for gait in gaits])
         self._parts = self._know_parts(worlds)
 
@@ -88,7 +88,7 @@ class BatchLimbs:
         _place(who, places, self._builds, self._stances, self._parts, self._joined)
 
     def _know_parts(self, worlds: Sequence[SimulatedWorld]) -> Parts:
-        frames = [person.frame for person in self._people]
+        frames = [person.model.frame for person in self._people]
         counts = [len(frame.bone) for frame in frames]
         return Parts(
             offsets=np.stack([frame.offsets for frame in frames]),
@@ -101,7 +101,7 @@ class BatchLimbs:
                     first + _number_of(world, key)
                     for world, first in zip(worlds, self._joined.first_body.tolist(), strict=False)
                     for person in world.crowd.people
-                    for key in person.part_keys
+                    for key in person.model.part_keys
                 ],
                 np.int64,
             ),

@@ -154,7 +154,7 @@ class Crowd:
             self._place_solid(person, person.position)
             self._make_solid(person, gap_to_robot)
         if self._is_visible and present:
-            names = [key for person in present for key in person.part_keys]
+            names = [key for person in present for key in person.model.part_keys]
             poses = np.concatenate([person.poses() for person in present])
             self._physics.set_poses(names, poses[:, :3, 3], quaternions(poses))
 
@@ -177,11 +177,11 @@ class Crowd:
         for key, part in self._visible_parts(person):
             self._physics.add_part(key, part.shapes, solid=False)
             self.materials[key] = part.material
-        radius, height = person.radius_m, person.config.height_m
+        radius, height = person.model.radius_m, person.config.height_m
         capsule = Shape(kind=ShapeKind.CAPSULE, size=(height - 2.0 * radius, radius, 0.0))
         self._physics.add_part(f"{person.name}/{_SOLID}", [capsule], visible=False)
         self._physics.set_hidden(f"{person.name}/{_SOLID}", True)
-        self.materials[f"{person.name}/{_SOLID}"] = person.parts[0].material
+        self.materials[f"{person.name}/{_SOLID}"] = person.model.parts[0].material
 
     def _set_shown(self, person: Person, is_shown: bool) -> None:
         self._is_shown[person.name] = is_shown
@@ -193,12 +193,12 @@ class Crowd:
 
     def _make_solid(self, person: Person, gap_to_robot: Callable[[float, float], float]) -> None:
         """Make the solid capsule of a person who has just appeared, as soon as the robot is outside it."""
-        if person.name not in self._solid and gap_to_robot(*person.position.tolist()) > person.radius_m:
+        if person.name not in self._solid and gap_to_robot(*person.position.tolist()) > person.model.radius_m:
             self._solid.add(person.name)
             self._physics.set_hidden(f"{person.name}/{_SOLID}", False)
 
     def _visible_parts(self, person: Person) -> list[tuple[str, Part]]:
-        return list(zip(person.part_keys, person.parts, strict=True)) if self._is_visible else []
+        return list(zip(person.model.part_keys, person.model.parts, strict=True)) if self._is_visible else []
 
     def _place_solid(self, person: Person, position: NDArray[np.float64]) -> None:
         at = (float(position[0]), float(position[1]), person.config.height_m / 2.0)

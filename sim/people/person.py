@@ -1,77 +1,38 @@
-"""Walking people: their parts, their movement, and the poses of their parts."""
+"""Walking people: their movement, and the poses of their parts."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Final
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.appearance.finisher import Finisher
-from peopleboy.sim.people.body.anthropometry import HAND_LENGTH, BodySize, measure
+from peopleboy.sim.people.body.anthropometry import HAND_LENGTH
 from peopleboy.sim.people.body.bodies import RestBody
 from peopleboy.sim.people.body.body_placement import (
-    BodyFrame,
-    arm_lengths,
     carry,
     least_stoop,
     put_on_floor,
     stoop,
     turn_arm,
 )
-from peopleboy.sim.people.body.body_shapes import ARM_PARTS as _LIMBS
 from peopleboy.sim.people.body.body_shapes import (
-    BAG_PART,
-    BODY_PARTS,
     FRAME_INDEX,
-    bag,
-    bone_index,
-    build_body,
-    support_points,
 )
-from peopleboy.sim.people.body.clothes import ROOM_C, dress
-from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
+from peopleboy.sim.people.body.clothes import ROOM_C
 from peopleboy.sim.people.body.postures import DOWN, LOW, Posture
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets, joint_points
-from peopleboy.sim.people.body.skin import BodyPlan, dress_body
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES
+from peopleboy.sim.people.body_model import make_body_model
 from peopleboy.sim.people.conducts import ConductSituation, Mind
-from peopleboy.sim.people.equipment import (
-    EQUIPMENT_HOLDS,
-    RIDDEN,
-    EquipmentPart,
-    find_grip,
-    make_equipment,
-)
-from peopleboy.sim.people.motion.gait import Gait, walking_gait
-from peopleboy.sim.people.motion.gait_styles import GAIT_STYLES
-from peopleboy.sim.people.motion.manner import USUAL, Hold, Manner, held_arms
 from peopleboy.sim.people.motion.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
-from peopleboy.sim.people.person_config import Arms, PersonConfig
-from peopleboy.sim.people.riding import riding_gait, riding_supports
+from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.walker import AS_PLANNED, Present, Surroundings, Walker, Wish
-from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.shapes.shapes import Part
 
 Array = NDArray[np.float64]
 Shift = tuple[float, float, float]
 
-ARM_PARTS = (*_LIMBS, BAG_PART)
-PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, BAG_PART), start=1)}
-
-_ARM_POSTURES: Final[Mapping[Arms, Posture]] = {
-    "crossed": Posture.ARMS_CROSSED,
-    "raised": Posture.ARMS_RAISED,
-}
-_ARM_HOLDS: Final[Mapping[Arms, tuple[Hold, Hold]]] = {
-    "in_pockets": ("pocket", "pocket"),
-    "telephone": ("telephone", "free"),
-    "phone_in_hand": ("phone_in_hand", "free"),
-}
-_BOW_TO_PHONE_RAD = math.radians(24.0)
-_BAG_LOOK = Material(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
-_BAG_HAND = "right"
 _ARM = ("upper_arm", "forearm", "hand")
 _FREE = 0.3  # share of a reach up to which the other hand may take over, while the person still turns
 _AHEAD_M = 0.1  # the right hand also reaches this far to the left
@@ -94,14 +55,11 @@ class Person:
     A finisher adds detail to its appearance; a body gives it a skin.
 
     Attributes:
+        model: what it is made of, which never changes.
         config: the settings.
         name: the configured name.
-        parts: its parts and those of its equipment, which never change; `poses` is in their order.
-        part_keys: the names of the parts in the world, each with its owner: the person or the equipment.
-        skin: the mesh that bends with the parts, or None for a person of capsules.
         stance: (1,) records STANCE, its current stance.
         walker: its movement over the floor.
-        gait: its gait.
     """
 
     def __init__(
@@ -114,30 +72,9 @@ class Person:
     ) -> None:
         self.config = config
         self.name = config.name
-        self._size = measure(config.height_m, config.sex, config.build)
-        outfit = NOTHING_MORE if finisher is None else finisher.outfit
-        plan = _plan(config, self._size, outfit, body)
-        self.skin = plan.skin
-        materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
-        if finisher is not None:
-            materials = finisher.finish(materials, plan.geometry, plan.head_m)
-        parts = [Part(name=n, shapes=g.shapes, material=materials[n]) for n, g in plan.geometry.items()]
-        self._joint_bone, self._joint_offset = plan.joint_bone, plan.joint_offset
-        self._offsets, self._arm_m = plan.offsets, plan.arm_m
-        self._manner = _manner_of(config, USUAL if finisher is None else finisher.manner)
-        self.gait, self._supports = self._make_gait(plan.supports)
-        things = self._make_equipment(air_c, rng)
-        geometry = plan.geometry | {thing.name: thing.geometry for thing in things}
-        parts += [Part(name=t.name, shapes=t.geometry.shapes, material=t.material) for t in things]
-        self.parts = tuple(parts)
-        self.part_keys = (
-            *(f"{config.name}/{name}" for name in plan.geometry),
-            *(f"{config.name}.{config.equipment}/{thing.name}" for thing in things),
-        )
-        self._part_bone = bone_index(geometry)
-        self._part_offset = np.array([g.offset_m for g in geometry.values()])
+        self.model = make_body_model(config, rng, finisher, body, air_c)
         leave_s = math.inf if config.leave_s is None else config.leave_s
-        self.walker = Walker(config.path, config.yields, self.radius_m, (config.enter_s, leave_s))
+        self.walker = Walker(config.path, config.yields, self.model.radius_m, (config.enter_s, leave_s))
         self._mind = Mind([waypoint.at_m for waypoint in config.path], config.reacts, config.leads)
         self._wish = AS_PLANNED
         self._gaze = Gaze()
@@ -179,12 +116,6 @@ class Person:
         """Progress along its path: waypoints reached, plus the share of the path to the next one."""
         return self.walker.progress
 
-    @property
-    def radius_m(self) -> float:
-        """[m] radius of the upright capsule that represents the person in contacts and sonar."""
-        girths = self._size.girths
-        return (girths.bideltoid_breadth + girths.chest_depth) / 4.0 * self._size.stature_m
-
     def step(
         self,
         time_s: float,
@@ -215,7 +146,7 @@ class Person:
 
     def move_limbs(self, dt_s: float) -> None:
         """Advance gait and postures by a time step, after the person has moved."""
-        walker, gait = self.walker, self.gait
+        walker, gait = self.walker, self.model.gait
         self.stance["time_s"] = walker.now_s
         if walker.has_moved:
             pace, turn_rate = pace_m_s(walker.velocity.tolist(), walker.turn_rate), walker.turn_rate
@@ -279,11 +210,6 @@ class Person:
         return "left" if self.config.bag or aside > _AHEAD_M else "right"
 
     @property
-    def frame(self) -> BodyFrame:
-        """The geometry that connects its bones and parts."""
-        return BodyFrame(self._offsets, self._supports, self._part_bone, self._part_offset)
-
-    @property
     def is_handling(self) -> bool:
         """Whether a hand is at a thing, or on the way there or back."""
         return self._grasp is not None
@@ -292,55 +218,25 @@ class Person:
     def build(self) -> Builds:
         """Its constant properties."""
         if self._build is None:
-            self._build = self._know_build()
+            self._build = self.model.builds()
         return self._build
 
     def rebind(self, stance: Stances, builds: Builds) -> None:
         """Use other arrays for stance and build from now on; they must hold the same values already."""
         self.stance, self._build = stance, builds
-        self.gait.rebind(builds.rotations[0], builds.sway[0])
-
-    def _make_gait(self, supports: Array) -> tuple[Gait, Array]:
-        """Return the gait, and the points that the body rests on."""
-        config, offsets = self.config, self._offsets
-        if config.equipment not in RIDDEN:
-            return walking_gait(offsets, supports[:3], config.height_m, self._manner), supports
-        ankle_m = -float(supports[0, 2])
-        gait = riding_gait(config.equipment, offsets, self._arm_m, ankle_m, config.height_m)
-        return gait, riding_supports(config.equipment, config.height_m)
-
-    def _make_equipment(self, air_c: float, rng: np.random.Generator) -> tuple[EquipmentPart, ...]:
-        config = self.config
-        if config.equipment == "nothing":
-            return ()
-        grip = find_grip(self._manner, self._offsets, self._supports, self._arm_m, config.height_m)
-        return make_equipment(config.equipment, grip, air_c, rng)
-
-    def _know_build(self) -> Builds:
-        held, is_held = held_arms(self._manner.holds)
-        (rotations, sway), arms = self.gait.tables, _ARM_POSTURES.get(self.config.arms)
-        return Builds(
-            rotations=rotations[None],
-            sway=sway[None],
-            root_scale=np.array([self.gait.root_scale]),
-            height_m=np.array([self.config.height_m]),
-            held=held[None],
-            is_held=is_held[None],
-            arms=np.array([-1 if arms is None else POSTURES[arms]], np.int64),
-            has_bag=np.array([self.config.bag]),
-            head_sweep_rad=np.array([self._manner.head_sweep_rad], np.float64),
-        )
+        self.model.gait.rebind(builds.rotations[0], builds.sway[0])
 
     def poses(self) -> Array:
-        """(P, 4, 4) world from part, in the order of `parts`."""
-        poses = np.empty((len(self.parts), 4, 4))
-        carry(self._world_bones(), self._part_bone, self._part_offset, poses)
+        """(P, 4, 4) world from part, in the order of the model's parts."""
+        frame = self.model.frame
+        poses = np.empty((len(self.model.parts), 4, 4))
+        carry(self._world_bones(), frame.bone, frame.part_offset, poses)
         return poses
 
     def joints(self) -> Array:
         """(17, 3) [m] world points of the joints in COCO order, each inside the person's shapes."""
-        poses = self._world_bones()[self._joint_bone]
-        points: Array = np.einsum("pij,pj->pi", poses[:, :3, :3], self._joint_offset) + poses[:, :3, 3]
+        poses = self._world_bones()[self.model.joint_bone]
+        points: Array = np.einsum("pij,pj->pi", poses[:, :3, :3], self.model.joint_offset) + poses[:, :3, 3]
         return points
 
     def _world_bones(self) -> Array:
@@ -359,7 +255,8 @@ class Person:
     def _on_the_floor(self, rotations: Array, shift: Shift) -> Array:
         bones = np.empty((len(FRAME_INDEX), 4, 4))
         x, y = self.walker.position.tolist()
-        put_on_floor(rotations, self._offsets, self._supports, shift, (x, y, self.walker.heading), bones)
+        frame = self.model.frame
+        put_on_floor(rotations, frame.offsets, frame.supports, shift, (x, y, self.walker.heading), bones)
         return bones
 
     def _reach(self, grasp: _Grasp, rotations: Array, shift: Shift) -> tuple[Array, Shift]:
@@ -376,11 +273,11 @@ class Person:
         bend = 0.0
         blend = self.stance["blend"][0]
         if not any(blend[POSTURES[posture]] for posture in LOW):
-            bend = grasp.share * least_stoop(gap_m, sum(self._arm_m))
+            bend = grasp.share * least_stoop(gap_m, sum(self.model.arm_m))
         bowed, shift = bent(bend)
         bones = self._on_the_floor(bowed, shift)
         target = bones[chest, :3, :3].T @ (grasp.point - bones[shoulder, :3, 3])
-        turned = turn_arm(bowed, grasp.side, target, self._arm_m)
+        turned = turn_arm(bowed, grasp.side, target, self.model.arm_m)
         arm = [BONE_INDEX[f"{grasp.side}_{bone}"] for bone in _ARM]
         bowed[arm] += grasp.share * (turned - bowed)[arm]
         return bowed, shift
@@ -392,45 +289,6 @@ class Person:
         return rotations, shift
 
 
-def _manner_of(config: PersonConfig, own: Manner) -> Manner:
-    """Change a person's own manner by the configured gait, arms and equipment."""
-    manner = GAIT_STYLES[config.gait].applied_to(own)
-    if config.equipment != "nothing":
-        hold: Hold = EQUIPMENT_HOLDS.get(config.equipment, "free")
-        return replace(manner, holds=(hold, hold))
-    if config.arms in _ARM_HOLDS:
-        left, right = (
-            kept if kept == "carries" else new
-            for kept, new in zip(own.holds, _ARM_HOLDS[config.arms], strict=True)
-        )
-        manner = replace(manner, holds=(left, right))
-    if config.arms == "phone_in_hand":
-        bow, _ = manner.head_rad
-        manner = replace(manner, head_rad=(bow + _BOW_TO_PHONE_RAD, 0.0))
-    return manner
-
-
 def pace_m_s(velocity: Sequence[float], turn_rad_s: float) -> float:
     """Return the speed of the feet over the floor at a velocity x, y [m/s] and a turn rate [rad/s]."""
     return math.hypot(*velocity, _TURNING_RADIUS_M * turn_rad_s)
-
-
-def _plan(config: PersonConfig, size: BodySize, outfit: Outfit, body: RestBody | None) -> BodyPlan:
-    """Return the plan of a person of capsules, or of one with a skin on a body."""
-    own_bag = {BAG_PART: bag(_BAG_HAND, size.stature_m)} if config.bag else {}
-    if body is not None:
-        plan = dress_body(body, size, config.clothes, outfit)
-        return replace(plan, geometry=plan.geometry | own_bag)
-    thickness_m = config.clothes.thickness_m()
-    parts = build_body(size, config.clothes.hair, thickness_m) | own_bag
-    joint_bone, joint_offset = joint_points(size)
-    return BodyPlan(
-        skin=None,
-        geometry=put_on(parts, size, outfit, thickness_m),
-        offsets=joint_offsets(size),
-        supports=support_points(size),
-        joint_bone=joint_bone,
-        joint_offset=joint_offset,
-        arm_m=arm_lengths(size.stature_m),
-        head_m=size.stature_m,
-    )

@@ -321,7 +321,7 @@ def known_people(people: Sequence[Person]) -> Records:
     known = np.zeros(len(people), BYSTANDER)
     known["id"] = range(1, len(people) + 1)
     known["height_m"] = [person.config.height_m for person in people]
-    known["radius_m"] = [person.radius_m for person in people]
+    known["radius_m"] = [person.model.radius_m for person in people]
     return known
 
 

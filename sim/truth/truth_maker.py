@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.sim.geometry.pinhole import Matrix, invert_pose, transform
 from peopleboy.sim.people.body.body_shapes import TORSO_PARTS
+from peopleboy.sim.people.body_model import ARM_PARTS, PART_CLASSES
 from peopleboy.sim.people.crowd import Crowd
-from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES
 from peopleboy.sim.physics.solid_shapes import PartKey
 from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.rendering.renderer import RenderPass

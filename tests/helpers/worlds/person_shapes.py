@@ -25,7 +25,7 @@ def depth_inside(shape: Shape, points: np.ndarray) -> np.ndarray:
 def person_depth(person, points, parts=None):
     """(N,) [m] depth of world points in the deepest of a person's shapes."""
     depths = []
-    for part, pose in zip(person.parts, person.poses(), strict=True):
+    for part, pose in zip(person.model.parts, person.poses(), strict=True):
         if parts is None or part.name in parts:
             local = (points - pose[:3, 3]) @ pose[:3, :3]
             depths += [depth_inside(shape, local) for shape in part.shapes]
@@ -53,7 +53,7 @@ def surface_points(shape: Shape, count: int = 12) -> np.ndarray:
 def person_points(person, parts=None):
     """(N, 3) [m] points all over a person's surface, in the world frame."""
     clouds = []
-    for part, pose in zip(person.parts, person.poses(), strict=True):
+    for part, pose in zip(person.model.parts, person.poses(), strict=True):
         if parts is None or part.name in parts:
             clouds += [surface_points(s) @ pose[:3, :3].T + pose[:3, 3] for s in part.shapes]
     return np.concatenate(clouds)

@@ -20,7 +20,7 @@ WAY = (Waypoint(at_m=(0.0, 0.0)), Waypoint(at_m=(30.0, 0.0), speed_m_s=1.0))
 
 def points_of(person, only):
     """(N, 3) [m] points over the parts with these keys, or whose keys begin so, in the world frame."""
-    rows = zip(person.part_keys, person.parts, person.poses(), strict=True)
+    rows = zip(person.model.part_keys, person.model.parts, person.poses(), strict=True)
     return np.concatenate(
         [surface_points(s) @ pose[:3, :3].T + pose[:3, 3]
          for key, part, pose in rows if key.startswith(only) for s in part.shapes]
@@ -113,7 +113,7 @@ def test_a_copied_person_goes_on_with_the_same_poses():
 
 
 def test_without_equipment_a_person_has_no_other_parts():
-    assert all(key.startswith("ann/") for key in make_person().part_keys)
+    assert all(key.startswith("ann/") for key in make_person().model.part_keys)
 
 
 @pytest.mark.parametrize(

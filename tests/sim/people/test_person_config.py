@@ -128,7 +128,7 @@ def test_patterned_garments_fool_a_thermal_contour(top, kind):
 
 def test_a_print_is_on_the_middle_of_the_chest():
     person = settle(make_person(height_m=1.8), 0.1)
-    pose = person.poses()[[part.name for part in person.parts].index("chest")]
+    pose = person.poses()[[part.name for part in person.model.parts].index("chest")]
     shoulders, hips = person.joints()[5:7, 2].mean(), person.joints()[11:13, 2].mean()
     assert hips + 0.5 * (shoulders - hips) < pose[2, 3] < shoulders
     assert pose[:3, 0] @ [1.0, 0.0, 0.0] > 0.95
@@ -137,9 +137,9 @@ def test_a_print_is_on_the_middle_of_the_chest():
 def test_the_same_generator_makes_the_same_person_and_another_does_not():
     way = (Waypoint(at_m=(0.0, 0.0)), Waypoint(at_m=(5.0, 1.0), pause_s=1.0, posture=Posture.BENDING))
     one, same, other = (settle(make_person(seed=s, path=way), 3.0) for s in (1, 1, 2))
-    assert one.parts == same.parts
+    assert one.model.parts == same.model.parts
     np.testing.assert_array_equal(one.poses(), same.poses())
     np.testing.assert_array_equal(one.joints(), same.joints())
-    assert one.parts != other.parts
+    assert one.model.parts != other.model.parts
     assert not np.allclose(one.poses(), other.poses(), atol=1e-4)
     np.testing.assert_array_equal(one.position, other.position)

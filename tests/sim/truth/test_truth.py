@@ -8,7 +8,7 @@ import pytest
 
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.people.person import PART_CLASSES
+from peopleboy.sim.people.body_model import PART_CLASSES
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
 from peopleboy.sim.world import SimulatedWorld
@@ -46,7 +46,7 @@ def draw_alone(world: SimulatedWorld, k: int, pose: np.ndarray) -> np.ndarray:
     """(3 H, 3 W) where TinyRenderer draws a person in a PyBullet world of its own, image in the middle."""
     somebody = world.crowd.people[k]
     with Bullet() as bullet:
-        for part, part_pose in zip(somebody.parts, somebody.poses(), strict=True):
+        for part, part_pose in zip(somebody.model.parts, somebody.poses(), strict=True):
             bullet.add_part(part.name, part.shapes)
             angle = cv2.Rodrigues(part_pose[:3, :3])[0].ravel()
             half = np.linalg.norm(angle) / 2.0

@@ -18,7 +18,7 @@ def looks(seed: int, air_c: float | None = 21.0, **settings: object) -> dict[str
     config = PersonConfig(**({"name": "ann", "path": STANDING, "clothes": PLAIN} | settings))
     finisher = None if air_c is None else Finisher(config, air_c, stream(seed, "looks"))
     person = Person(config, stream(seed, "person"), finisher)
-    return {part.name: part.material for part in person.parts}
+    return {part.name: part.material for part in person.model.parts}
 
 
 @cache

@@ -9,7 +9,7 @@ from peopleboy.sim.people.body.body_shapes import TORSO_PARTS
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES, PARENTS, joint_offsets
-from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES
+from peopleboy.sim.people.body_model import ARM_PARTS, PART_CLASSES
 from peopleboy.sim.people.person_config import Waypoint
 from tests.helpers.worlds.person_shapes import person_depth, person_points
 from tests.helpers.worlds.walkers import make_person, settle, walk
@@ -122,12 +122,12 @@ def test_left_joints_are_on_the_left():
 
 
 def test_parts_are_named_and_classed():
-    names = [part.name for part in make_person(bag=True).parts]
+    names = [part.name for part in make_person(bag=True).model.parts]
     assert len(set(names)) == len(names)
     assert set(names) == set(PART_CLASSES)
     assert sorted(PART_CLASSES.values()) == list(range(1, len(names) + 1))
     assert set(ARM_PARTS) | set(TORSO_PARTS) <= set(names)
-    assert "bag" not in [part.name for part in make_person().parts]
+    assert "bag" not in [part.name for part in make_person().model.parts]
 
 
 def test_from_behind_the_head_is_mostly_hair():

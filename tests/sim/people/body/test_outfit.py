@@ -9,7 +9,8 @@ from peopleboy.sim.people.body.anthropometry import measure
 from peopleboy.sim.people.body.body_shapes import BAG_PART, build_body
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, draw_outfit, put_on
-from peopleboy.sim.people.person import PART_CLASSES, Person
+from peopleboy.sim.people.body_model import PART_CLASSES
+from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import Waypoint
 from tests.helpers.worlds.individuals import make_individual
 from tests.helpers.worlds.person_shapes import person_points
@@ -44,11 +45,11 @@ def test_nothing_more_changes_no_part() -> None:
 
 def test_coats_cover_what_they_hang_over_and_end_straight() -> None:
     short, hip, long = (dressed(coat=coat) for coat in ("none", "hip", "long"))
-    assert [len(each.parts) for each in (short, hip, long)] == [len(short.parts)] * 3
+    assert [len(each.model.parts) for each in (short, hip, long)] == [len(short.model.parts)] * 3
     low = [person_points(each, ["pelvis"])[:, 2].min() for each in (short, hip)]
     assert low[1] > low[0] - 0.06
     assert span(long, "left_thigh", "right_thigh") > span(short, "left_thigh", "right_thigh") + 0.01
-    materials = {part.name: part.material for part in long.parts}
+    materials = {part.name: part.material for part in long.model.parts}
     assert materials["left_thigh"].rgb == materials["chest"].rgb == materials["pelvis"].rgb
     assert materials["left_shin"].rgb != materials["chest"].rgb
 
@@ -65,7 +66,7 @@ def test_hair_stands_off_and_hoods_cover_it() -> None:
     flat, thick, hood = dressed(short), dressed(short, hair_m=0.03), dressed(headgear="hood")
     assert span(thick, "hair") == pytest.approx(span(flat, "hair") + 0.06, abs=0.012)
     assert person_points(thick)[:, 2].max() == pytest.approx(1.765, abs=0.02)
-    materials = {part.name: part.material for part in hood.parts}
+    materials = {part.name: part.material for part in hood.model.parts}
     assert materials["hair"].rgb == materials["chest"].rgb
 
 
@@ -75,7 +76,7 @@ def test_what_is_carried_is_behind_beside_or_below(side: str) -> None:
     at = {}
     for carried in ("rucksack", "shoulder_bag", "shopping_bag"):
         person = dressed(carried=carried, side=side)
-        assert [part.name for part in person.parts][-1] == BAG_PART
+        assert [part.name for part in person.model.parts][-1] == BAG_PART
         at[carried] = person_points(person, [BAG_PART])
     assert at["rucksack"][:, 0].max() < 0.02
     assert abs(at["rucksack"][:, 1].mean()) < 0.02
@@ -88,7 +89,7 @@ def test_what_is_carried_goes_along_and_is_of_the_person() -> None:
     person = make_individual(0, path=path, outfit={"carried": "rucksack"})
     for _ in walk(settle(person, 1.0), 2.0, start=1.0):
         assert 0.05 < person.position[0] - person.poses()[-1][0, 3] + 0.3 < 0.6
-    assert {part.name for part in person.parts} <= PART_CLASSES.keys()
+    assert {part.name for part in person.model.parts} <= PART_CLASSES.keys()
 
 
 def test_outfits_are_as_frequent_as_said_and_fit_the_clothes() -> None:

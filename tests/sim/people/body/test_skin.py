@@ -31,8 +31,8 @@ def skinned(age: str, speed: float = 1.0) -> Person:
 
 def vertices(person: Person) -> np.ndarray:
     """(V, 3) [m] of a person's skin, world frame."""
-    assert person.skin is not None
-    _, table = join_skins(make_shape_table([]), [(person.skin, range(len(person.parts)))])
+    assert person.model.skin is not None
+    _, table = join_skins(make_shape_table([]), [(person.model.skin, range(len(person.model.parts)))])
     assert table is not None
     return pose_skins(table, person.poses()).vertices
 
@@ -72,9 +72,9 @@ def test_thick_clothes_make_a_person_wider_than_thin_ones() -> None:
     def area(top: str, part: str) -> float:
         config = PersonConfig(name="ann", path=(Waypoint(at_m=(0.0, 0.0)),), clothes=Clothes(top=top))
         person = Person(config, np.random.default_rng(0), body=body("adult"))
-        assert person.skin is not None
-        own = np.unique(person.skin.triangles[person.skin.part == BODY_PARTS.index(part)])
-        x, y, _ = np.ptp(person.skin.vertices[own], axis=0)
+        assert person.model.skin is not None
+        own = np.unique(person.model.skin.triangles[person.model.skin.part == BODY_PARTS.index(part)])
+        x, y, _ = np.ptp(person.model.skin.vertices[own], axis=0)
         return float(x * y)
 
     assert area("jacket", "abdomen") > 1.1 * area("t_shirt", "abdomen")
@@ -92,8 +92,8 @@ def test_the_shoes_of_a_walking_skin_neither_sink_nor_hover(age: str, speed: flo
 @pytest.mark.parametrize("age", AGES)
 def test_a_foot_of_a_skin_on_the_floor_stands_still(age: str) -> None:
     person = settle(skinned(age), 3.0)
-    names = [part.name for part in person.parts]
-    soles, foot = person.frame.supports[:3], names.index("left_foot")
+    names = [part.name for part in person.model.parts]
+    soles, foot = person.model.frame.supports[:3], names.index("left_foot")
     track = []
     for _ in walk(person, 3.0, 1 / 120, start=3.0):
         pose = person.poses()[foot]

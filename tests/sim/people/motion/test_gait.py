@@ -26,7 +26,7 @@ def walker(speed, **settings):
 def sole_tracks(person, seconds, start, dt=1 / 240):
     """(T, 6, 3) [m] heel, ball and toe of both feet in the world."""
     soles = sole_points(person.config.height_m)
-    index = [[part.name for part in person.parts].index(name) for name in FOOT_PARTS]
+    index = [[part.name for part in person.model.parts].index(name) for name in FOOT_PARTS]
     track = []
     for _ in walk(person, seconds, dt, start=start):
         feet = person.poses()[index]

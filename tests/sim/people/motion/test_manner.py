@@ -52,7 +52,7 @@ def walking(speed: float) -> dict[str, object]:
 def soles(person, seconds: float, start: float, dt: float = 1 / 120) -> np.ndarray:
     """(T, 6, 3) [m] heel, ball and toe of both feet in the world."""
     points = sole_points(person.config.height_m)
-    index = [[part.name for part in person.parts].index(name) for name in FEET]
+    index = [[part.name for part in person.model.parts].index(name) for name in FEET]
     return np.array(
         [
             np.concatenate([points @ f[:3, :3].T + f[:3, 3] for f in person.poses()[index]])

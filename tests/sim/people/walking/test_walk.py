@@ -169,7 +169,7 @@ def test_a_script_waits_for_a_robot_that_stands_in_the_way():
     robot = PlanarState(position=np.array([3.0, 0.1]), velocity=np.zeros(2))
     person = make_person(path=path((0.0, 0.0), (6.0, 0.0)))
     settle(person, 8.0, robot=robot)
-    gap = math.dist(person.position, robot.position) - person.radius_m - robot.radius_m
+    gap = math.dist(person.position, robot.position) - person.model.radius_m - robot.radius_m
     assert 0.1 < gap < 0.5
     assert np.hypot(*person.velocity) == 0.0
     settle(person, 8.0, start=8.0)
