@@ -59,6 +59,8 @@ class Track:
         age_s: time since the track was initiated [s].
         occluder: id of the person who occludes this one; None if there is none, or none known.
         posture: posture of the person; None if the detector does not recognise postures.
+        edges: left and right edge of the whole person, from the middle of the boxes to the right, in heights
+            of the boxes; None if unknown.
     """
 
     id: int
@@ -69,6 +71,7 @@ class Track:
     age_s: float
     occluder: int | None = None
     posture: TrackPosture | None = None
+    edges: tuple[float, float] | None = None
 
     def __repr__(self) -> str:
         """Return id, status, confidence and position in one line."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from benchmarks.peers.detectors import Boxes, Oracle, PeerDetections
-from peopleboy.tracker.boxes import iou, within_image
+from peopleboy.tracker.boxes import Box, iou, within_image
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.box_kinds import boxed_whole, whole_of
 from peopleboy.tracker.frame import THERMAL, Frame
@@ -66,7 +66,8 @@ class Ours:
         boxes = explained.boxes
         if self._boxes_whole and len(boxes):
             rows, columns = self._shape
-            boxes = within_image(np.array([whole_of(tuple(box)) for box in boxes.tolist()]), columns, rows)
+            wholes = [_whole(*both) for both in zip(boxes.tolist(), explained.edges.tolist(), strict=True)]
+            boxes = within_image(np.array(wholes), columns, rows)
         return PeerDetections(boxes, 1.0 / (1.0 + np.exp(-explained.scores)))
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
@@ -75,6 +76,12 @@ class Ours:
         self._shape = frame.images[THERMAL].shape[:2] if THERMAL in frame.images else self._shape
         found = list(confirmed(boxed_whole(tracks, frame) if self._boxes_whole else tracks, THERMAL))
         return np.array([box for _, box in found]).reshape(-1, 4), [track.id for track, _ in found]
+
+
+def _whole(torso: list[float], edges: list[float]) -> Box:
+    """Return the box of a whole person, as `whole_of` does; edges are NaN where unknown."""
+    left, top, width, height = torso
+    return whole_of((left, top, width, height), None if np.isnan(edges).any() else (edges[0], edges[1]))
 
 
 class TrueDetector:

@@ -25,20 +25,28 @@ class Detections(NamedTuple):
         box: (N, 4) [px] from head to feet, the highest score first.
         score: (N,) log-odds, calibrated on images like those of the training.
         trees: (N,) log-odds of the cascade alone.
+        edges: (N, 2) left and right edge of the whole person, from the middle of the box to the right, in
+            heights of the box; NaN where unknown.
     """
 
     box: Floats
     score: Floats
     trees: Floats
+    edges: Floats
 
     @classmethod
     def from_trees(cls, box: Floats, score: Floats) -> "Detections":
         """Make detections of the cascade alone, before rescoring."""
-        return cls(box, score, score)
+        return cls.of(box, score, score)
+
+    @classmethod
+    def of(cls, box: Floats, score: Floats, trees: Floats) -> "Detections":
+        """Make detections of people whose edges are unknown."""
+        return cls(box, score, trees, np.full((len(box), 2), math.nan))
 
     def take(self, rows: NDArray[np.bool_] | NDArray[np.intp]) -> "Detections":
         """Return the detections of these rows."""
-        return Detections(self.box[rows], self.score[rows], self.trees[rows])
+        return Detections(*(column[rows] for column in self))
 
     def joined(self, others: "Detections") -> "Detections":
         """Return these detections, then others."""

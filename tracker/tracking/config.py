@@ -193,6 +193,7 @@ class ExistenceConfig:
         taken: overlap with a track at which a detection initiates no other one.
         learning: weight of a new image in the remembered appearance, width and confidence.
         learning_recent: the same in the recent colours that are compared with it.
+        learning_edges: the same in the edges of the whole person, which change with each step.
         own_colours: Bhattacharyya coefficient above which recent colours are the person's own.
     """
 
@@ -226,6 +227,7 @@ class ExistenceConfig:
     taken: float = 0.45
     learning: float = 0.1
     learning_recent: float = 0.2
+    learning_edges: float = 0.4
     own_colours: float = 0.7
 
 

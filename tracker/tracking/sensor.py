@@ -87,6 +87,8 @@ class SensorDetections:
             images of a person do not reduce, as they come from gait and build; None if there are none.
         is_masked: whether colours are of a person's own pixels, so that they do not mix where people overlap.
         posture: (M, 5) log-odds of the postures, up to a constant; None if they are not recognised.
+        edges: (M, 2) left and right edge of the whole person, from the middle of the box, in its heights; NaN
+            where unknown; None if they are not measured.
         settings: of this sensor.
     """
 
@@ -103,6 +105,7 @@ class SensorDetections:
     is_masked: bool = False
     common_m: Floats | None = None
     posture: Floats | None = None
+    edges: Floats | None = None
     settings: Settings
 
     def __len__(self) -> int:

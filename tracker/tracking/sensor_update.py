@@ -111,6 +111,8 @@ class SensorUpdate:
                 one.common_m = detections.common_m[column]
             if detections.posture is not None:
                 one.update_posture(detections.posture[column], dt_s)
+            if detections.edges is not None:
+                one.update_edges(detections.edges[column], existence.learning_edges)
             has_width = detections.has_width is None or bool(detections.has_width[column])
             one.update_box(detections.camera, detections.boxes[column], has_width=has_width)
             if not is_beside[row]:

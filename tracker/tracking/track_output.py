@@ -37,6 +37,7 @@ def output_tracks(
             status=one.status(time_s),
             age_s=time_s - one.born_s,
             occluder=one.occluder,
+            edges=None if np.isnan(one.edges).any() else (float(one.edges[0]), float(one.edges[1])),
             posture=None if one.posture is None else list(TrackPosture)[int(one.posture.argmax())],
         )
         for row, one in enumerate(tracks.items)

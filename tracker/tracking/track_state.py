@@ -76,6 +76,8 @@ class TrackState:
             reduce.
         continuation: of a lost track, as long as it is provisional.
         not_ids: ids whose continuation was ended as a mistake.
+        edges: (2,) left and right edge of the whole person, from the middle of the box, in its heights; NaN
+            if unknown.
     """
 
     key: int
@@ -104,6 +106,7 @@ class TrackState:
     common_m: Floats = field(default_factory=lambda: np.zeros(2))
     continuation: Continuation | None = None
     not_ids: frozenset[int] = frozenset()
+    edges: Floats = field(default_factory=lambda: np.full(2, math.nan))
 
     @property
     def is_confirmed(self) -> bool:
@@ -139,6 +142,11 @@ class TrackState:
         self.shown[camera] = self.seen_s, box
         if has_width:
             self.ratio += self.existence.learning * (float(box[2] / box[3]) - self.ratio)
+
+    def update_edges(self, edges: Floats, learning: float) -> None:
+        """Update the edges (2,) of the whole person, unless they are unknown."""
+        if not np.isnan(edges).any():
+            self.edges = edges if np.isnan(self.edges).any() else self.edges + learning * (edges - self.edges)
 
     def update_posture(self, log_odds: Floats, dt_s: float) -> None:
         """Update the postures with the log-odds (5,) of one image: a hidden Markov model's filter."""

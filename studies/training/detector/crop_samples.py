@@ -42,6 +42,7 @@ Array = jax.Array | Planes
 
 BATCH: Final = 64
 _RATE: Final = 1.5e-3
+_FINE_RATE: Final = 7e-4
 _WARM_UP: Final = 300  # batches
 _DECAY: Final = 0.02  # weight decay of kernels per batch, relative to the learning rate
 _REPORTED: Final = 200  # batches between two progress lines
@@ -90,7 +91,8 @@ class CropSamples(Arrays):
         crops: (N, rows, columns, 3) uint8.
         features: (N, 9), see `crop_features`.
         overlap: (N,) largest IoU with a visible person.
-        offsets: (N, 4) offsets to that person, see `encode_boxes`; 0 without a person.
+        offsets: (N, 4) offsets to that person, see `encode_boxes`; 0 without a person. For networks that
+            predict edges, (N, 6) with those of `encode_edges`; NaN where unknown.
     """
 
     crops: Crops
@@ -99,9 +101,9 @@ class CropSamples(Arrays):
     offsets: Planes
 
     @classmethod
-    def empty(cls, size: CropSize) -> "CropSamples":
-        """Return empty samples with crops of a given size."""
-        none = (size.rows, size.columns, CHANNELS), (FEATURES,), (), (OFFSETS,)
+    def empty(cls, size: CropSize, offsets: int) -> "CropSamples":
+        """Return empty samples with crops of a given size and a number of offsets."""
+        none = (size.rows, size.columns, CHANNELS), (FEATURES,), (), (offsets,)
         kinds = (np.uint8, np.float32, np.float32, np.float32)
         return cls(*(np.empty((0, *shape), kind) for shape, kind in zip(none, kinds, strict=True)))
 
@@ -120,6 +122,7 @@ class CropSamples(Arrays):
         features, offset = self.features.copy(), self.offsets.copy()
         features[:, 4:6] = self.features[:, [5, 4]]
         offset[:, 0] *= -1.0
+        offset[:, OFFSETS:] = -offset[:, : OFFSETS - 1 : -1]
         return CropSamples(self.crops[:, :, ::-1], features, self.overlap, offset)
 
 
@@ -143,14 +146,17 @@ class CropTraining(Specification[CropData]):
     """
 
     NETWORK: ClassVar[type[CropNetwork]]
-    EPOCHS: ClassVar[int]
     DROPOUT: ClassVar[float]
     VERSIONS: ClassVar[int]
     """Number of augmented versions of each training image."""
+    TARGETS: ClassVar[int] = OFFSETS
+    """Number of offsets of each sample."""
 
     sequences: Annotated[
         int, Field(ge=5, le=2000, alias="seeds", description="Number of random worlds to train on.")
     ] = 600
+    epochs: Annotated[int, Field(ge=1, description="Number of passes through the samples.")] = 4
+    fine_tune: Annotated[bool, Field(description="Start from the shipped weights.")] = False
 
     def default_folder(self, model: str) -> Path:  # noqa: ARG002
         """Return the folder that all models of the detector share."""
@@ -189,7 +195,7 @@ class CropTraining(Specification[CropData]):
         return CropData(tasks, samples)
 
     def _samples(self, tasks: Iterable[SampleTask], *, augments: bool = False) -> CropSamples:
-        parts = [CropSamples.empty(self.NETWORK.ARCHITECTURE.crop)]
+        parts = [CropSamples.empty(self.NETWORK.ARCHITECTURE.crop, self.TARGETS)]
         for task in tasks:
             images, rng = load_images([task.path]), np.random.default_rng(seed_of(task))
             drawn = versions(images, rng, self.VERSIONS if augments else 0)
@@ -201,8 +207,13 @@ class CropTraining(Specification[CropData]):
     def fit(self, data: CropData) -> Mapping[str, CropNetwork]:
         """Train the network."""
         samples, architecture = data.samples.training, self.NETWORK.ARCHITECTURE
-        weights = fit_crops(architecture, self.loss, samples, epochs=self.EPOCHS, dropout=self.DROPOUT)
+        first = self.NETWORK.shipped().weights if self.fine_tune else None
+        weights = fit_crops(
+            architecture, self.loss, samples, epochs=self.epochs, dropout=self.DROPOUT, first=first
+        )
         about = {"trained on": f"{len(data.tasks.training)} sequences, {len(samples)} samples"}
+        if self.fine_tune:
+            about["trained on"] += ", starting from the weights shipped before"
         return {f"{self.NETWORK.MODEL}.npz": self.NETWORK(weights, about)}
 
 
@@ -226,10 +237,10 @@ def predictions(network: Any, samples: CropSamples) -> Floats:
 
 
 def mean_overlaps(offsets: Floats, samples: CropSamples, rows: NDArray[np.bool_]) -> tuple[float, float]:
-    """Return the mean IoU of selected samples before and after applying predicted offsets (N, 4)."""
+    """Return the mean IoU of selected samples before and after applying predicted offsets (N, 4 or more)."""
     window = np.tile([0.0, 0.0, 1.0, 1.0], (int(rows.sum()), 1))
-    true = decode_boxes(window, samples.offsets[rows].astype(np.float64))
-    overlap = iou(decode_boxes(window, offsets[rows]), true)
+    true = decode_boxes(window, samples.offsets[rows, :OFFSETS].astype(np.float64))
+    overlap = iou(decode_boxes(window, offsets[rows, :OFFSETS]), true)
     return float(samples.overlap[rows].mean()), float(overlap.mean())
 
 
@@ -243,7 +254,13 @@ def first_weights(architecture: Architecture, rng: np.random.Generator) -> dict[
 
 
 def fit_crops(
-    architecture: Architecture, loss: CropLoss, samples: CropSamples, *, epochs: int, dropout: float
+    architecture: Architecture,
+    loss: CropLoss,
+    samples: CropSamples,
+    *,
+    epochs: int,
+    dropout: float,
+    first: Mapping[str, Planes] | None = None,
 ) -> dict[str, Planes]:
     """Train a network; half of the batches are mirrored.
 
@@ -253,6 +270,7 @@ def fit_crops(
         samples: training samples.
         epochs: number of passes through the samples.
         dropout: dropout rate (Srivastava et al., JMLR 2014).
+        first: initial weights; random ones by default. From given weights, the learning rate is half as high.
 
     Returns:
         The average of the weights over the last batches.
@@ -260,7 +278,7 @@ def fit_crops(
     Raises:
         BadInput: there are too few samples.
     """
-    rng, count = np.random.default_rng(0), epochs * (len(samples) // BATCH)
+    rng, count, shapes = np.random.default_rng(0), epochs * (len(samples) // BATCH), architecture.shapes()
     if not count:
         raise BadInput(f"{len(samples)} samples, at least {BATCH} are needed; use more sequences")
 
@@ -276,12 +294,13 @@ def fit_crops(
 
     optimiser = Optimiser(
         augmented_loss,
-        first_weights(architecture, rng),
+        first_weights(architecture, rng) if first is None else {name: first[name] for name in shapes},
         seed=int(rng.integers(2**31)),
         decay=_DECAY,
         averages=True,
     )
-    rate = optax.warmup_cosine_decay_schedule(0.0, _RATE, min(_WARM_UP, count // 2), count)
+    peak = _RATE if first is None else _FINE_RATE
+    rate = optax.warmup_cosine_decay_schedule(0.0, peak, min(_WARM_UP, count // 2), count)
     left = ((batch, float(rate(number))) for number, batch in enumerate(_batches(samples, rng, epochs)))
     while some := list(islice(left, _REPORTED)):
         means = ", ".join(f"{name} {value:.3f}" for name, value in optimiser.run(some).items())

@@ -1,13 +1,17 @@
-"""Train the box refinement network on people's boxes with the typical errors of rescored boxes."""
+"""Train the box refinement network on people's boxes with the typical errors of rescored boxes.
+
+It also learns the left and right edge of the whole person, arms and legs included.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import Annotated, ClassVar, Final
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.studies.training.detector.crop_samples import (
@@ -22,8 +26,8 @@ from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.studies.training.optimiser import huber
 from peopleboy.tracker.boxes import area, cover, intersection, iou
 from peopleboy.tracker.sensors.detections import Detections
-from peopleboy.tracker.sensors.thermal.detector.box_regression import encode_boxes
-from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork
+from peopleboy.tracker.sensors.thermal.detector.box_regression import OFFSETS, encode_boxes
+from peopleboy.tracker.sensors.thermal.detector.rescoring import EDGES, BoxRefinementNetwork, encode_edges
 from peopleboy.tracker.sensors.thermal.detector.window import Floats
 
 _HARDLY_VISIBLE: Final = 0.3  # share of occluded or non-upright people that are sampled
@@ -38,6 +42,8 @@ _LOWEST: Final = 0.4  # least height of a box, relative to its person
 
 _OVERLAP: Final = 4.0  # weight of 1 - IoU
 _UNITS: Final = 0.3  # weight of the errors in units
+_EDGES: Final = 0.6  # weight of the errors of edges in units
+_EDGES_VISIBLE: Final = 0.7  # least visible share of a person whose edges are learned
 _LINEAR_FROM: Final = 1.0  # error in units, from which on the loss is linear
 _MOST: Final = 8.0  # largest loss per offset; a box that is farther off belongs to another person
 _CLIPPED: Final = 12.0  # units; boxes without overlap have no gradient of IoU
@@ -49,17 +55,22 @@ class BoxRefinementTraining(CropTraining):
     """The training data are people in random worlds that are new to the shipped cascade."""
 
     NETWORK: ClassVar[type[BoxRefinementNetwork]] = BoxRefinementNetwork
-    EPOCHS: ClassVar[int] = 2
     DROPOUT: ClassVar[float] = 0.2
     VERSIONS: ClassVar[int] = 4
+    TARGETS: ClassVar[int] = OFFSETS + EDGES
+
+    epochs: Annotated[int, Field(ge=1, description="Number of passes through the samples.")] = 2
 
     def sample(self, version: Version, *, augments: bool) -> CropSamples:  # noqa: ARG002
         """Collect the people of an image with displaced boxes."""
-        people = version.image.box[_is_sampled(version.image, version.rng)]
+        image, rows = version.image, _is_sampled(version.image, version.rng)
+        people = image.box[rows]
         boxes = _displace(people, version.rng)
         found = Detections.from_trees(boxes, np.zeros(len(boxes)))
-        size = self.NETWORK.ARCHITECTURE.crop
-        return CropSamples.cut(version, found, iou(boxes, people), encode_boxes(boxes, people), size)
+        edges = encode_edges(boxes, image.whole[rows])
+        edges[image.visible[rows] < _EDGES_VISIBLE] = np.nan
+        offsets = np.concatenate([encode_boxes(boxes, people), edges], axis=1)
+        return CropSamples.cut(version, found, iou(boxes, people), offsets, self.NETWORK.ARCHITECTURE.crop)
 
     def check(self, others: CropSamples) -> None:
         """Check that people are visible in the validation sequences."""
@@ -67,22 +78,37 @@ class BoxRefinementTraining(CropTraining):
             raise BadInput("no people are visible in the validation sequences; use more sequences")
 
     def loss(self, outputs: jax.Array, batch: CropSamples) -> tuple[jax.Array, dict[str, jax.Array]]:
-        """Return the losses of overlap (Yu et al., UnitBox 2016) and of offsets in units."""
+        """Return the losses of overlap (Yu et al., UnitBox 2016), and of offsets and known edges in units."""
         scales, usual = self.NETWORK.SCALES, self.NETWORK.USUAL
-        off = jnp.abs(outputs - (batch.offsets - usual) / scales)
-        offsets = jnp.clip(outputs, -_CLIPPED, _CLIPPED) * scales + usual
-        overlap = _iou(offsets, jnp.asarray(batch.offsets))
-        units = jnp.minimum(huber(off, _LINEAR_FROM), _MOST).mean(axis=1)
-        whole = _OVERLAP * (1.0 - overlap) + _UNITS * units
+        units = (jnp.asarray(batch.offsets) - usual) / scales
+        off = jnp.where(jnp.isnan(units), 0.0, jnp.abs(outputs - jnp.nan_to_num(units)))
+        offsets = (jnp.clip(outputs, -_CLIPPED, _CLIPPED) * scales + usual)[:, :OFFSETS]
+        overlap = _iou(offsets, jnp.asarray(batch.offsets)[:, :OFFSETS])
+        losses = jnp.minimum(huber(off, _LINEAR_FROM), _MOST)
+        box, edges = losses[:, :OFFSETS].mean(axis=1), losses[:, OFFSETS:].mean(axis=1)
+        whole = _OVERLAP * (1.0 - overlap) + _UNITS * box + _EDGES * edges
         return whole.mean(), {"overlap": overlap.mean(), "units off": off.mean()}
 
     def evaluate(self, model: BoxRefinementNetwork, data: CropData) -> Mapping[str, str]:
         """Measure how much the overlap of boxes with people improves."""
         others = data.samples.validation
-        rows = np.ones(len(others), np.bool_)
-        before, after = mean_overlaps(predictions(model, others), others, rows)
-        result = f"{len(rows)} boxes: mean IoU {before:.3f} before, {after:.3f} refined"
+        predicted, rows = predictions(model, others), np.ones(len(others), np.bool_)
+        before, after = mean_overlaps(predicted, others, rows)
+        edges, usual = _edge_overlaps(predicted, others.offsets), _edge_overlaps(model.USUAL, others.offsets)
+        result = (
+            f"{len(rows)} boxes: mean IoU {before:.3f} before, {after:.3f} refined; "
+            f"of the extent from left to right {usual:.3f} at the usual width, {edges:.3f} refined"
+        )
         return {f"on {len(data.tasks.validation)} other sequences": result}
+
+
+def _edge_overlaps(predicted: Floats, offsets: NDArray[np.float32]) -> float:
+    """Return the mean overlap of people's extents from left to right with predicted ones, (N, 6) both."""
+    known = offsets[~np.isnan(offsets[:, OFFSETS])]
+    predicted = np.broadcast_to(predicted, offsets.shape)[~np.isnan(offsets[:, OFFSETS])]
+    (a, b), (p, q) = known[:, OFFSETS:].T, predicted[:, OFFSETS:].T
+    common = np.maximum(np.minimum(b, q) - np.maximum(a, p), 0.0)
+    return float(np.mean(common / (np.maximum(b, q) - np.minimum(a, p))))
 
 
 def _is_sampled(image: ThermalImage, rng: np.random.Generator) -> NDArray[np.bool_]:

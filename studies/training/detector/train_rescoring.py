@@ -46,7 +46,6 @@ class RescoringTraining(CropTraining):
     """The training data are the shipped cascade's detections in random worlds that are new to it."""
 
     NETWORK: ClassVar[type[RescoringNetwork]] = RescoringNetwork
-    EPOCHS: ClassVar[int] = 4
     DROPOUT: ClassVar[float] = 0.4
     VERSIONS: ClassVar[int] = 2
 

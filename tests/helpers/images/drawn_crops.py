@@ -17,7 +17,7 @@ from peopleboy.tracker.sensors.thermal.detector.box_regression import OFFSETS
 from peopleboy.tracker.sensors.thermal.detector.crops import CHANNELS, FEATURES, Planes
 
 
-def drawn_crops(architecture: Architecture, count: int, seed: int = 0) -> CropSamples:
+def drawn_crops(architecture: Architecture, count: int, seed: int = 0, targets: int = OFFSETS) -> CropSamples:
     """Draw crops of which those of people have a bright upright bar in the middle, the others a lying one.
 
     The bar of somebody who is to the right of the crop's middle is, too.
@@ -26,7 +26,8 @@ def drawn_crops(architecture: Architecture, count: int, seed: int = 0) -> CropSa
     rows, columns, heights = architecture.crop
     crops = rng.integers(60, 120, (count, rows, columns, CHANNELS)).astype(np.uint8)
     features = rng.normal(0.0, 0.1, (count, FEATURES)).astype(np.float32)
-    offsets = rng.normal([0.0, 0.0, 0.0, 0.22], 0.02, (count, OFFSETS)).astype(np.float32)
+    usual = [0.0, 0.0, 0.0, 0.22, -0.18, 0.18][:targets]
+    offsets = rng.normal(usual, 0.02, (count, targets)).astype(np.float32)
     is_person = rng.random(count) < 0.5
     pixels_per_height = rows / heights
     for crop, someone, aside in zip(crops, is_person, offsets[:, 0] * pixels_per_height, strict=True):

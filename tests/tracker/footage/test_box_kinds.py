@@ -13,6 +13,7 @@ from peopleboy.tracker.footage.box_kinds import (
     WHOLE_PER_HEIGHT,
     BoxKind,
     boxed_whole,
+    person_of,
     torso_of,
     whole_of,
 )
@@ -54,6 +55,20 @@ def test_what_boxes_are_drawn_round_is_told_by_how_wide_most_are(
     widths: tuple[float, ...], kind: BoxKind
 ) -> None:
     assert BoxKind.of(truth(*widths)) is kind
+
+
+def test_known_edges_are_the_sides_of_a_whole_box_with_margins() -> None:
+    _, top, _, height = whole_of(TORSO)
+    middle = TORSO[0] + TORSO[2] / 2.0 + 0.5
+    known = whole_of(TORSO, (-0.10, 0.25))
+    np.testing.assert_allclose(known, (middle - 14.0, top, 43.0, height))
+    found = track(boxes={"thermal": TORSO}, edges=(-0.10, 0.25))
+    assert boxed_whole([found], frame())[0].boxes == {"thermal": pytest.approx(known)}
+
+
+def test_the_person_in_a_whole_box_has_its_edges_and_no_margins() -> None:
+    left, top, width, height = person_of(whole_of(TORSO, (-0.10, 0.25)))
+    np.testing.assert_allclose((left, top, width, height), (41.0, TORSO[1], 35.0, TORSO[3]))
 
 
 def test_boxes_without_height_tell_nothing() -> None:

@@ -54,7 +54,7 @@ class FixedDetections:
             self.everywhere.append(len(self.expected))
         self.expected.append(expected)
         boxes = np.array(next(self._boxes), np.float64).reshape(-1, 4)
-        return Detections(boxes, np.full(len(boxes), self._score), np.arange(1.0, 1.0 + len(boxes)))
+        return Detections.of(boxes, np.full(len(boxes), self._score), np.arange(1.0, 1.0 + len(boxes)))
 
 
 def walker(middle: float, height: float = 100.0) -> Box:

@@ -158,3 +158,14 @@ def test_without_evidence_all_postures_become_equally_probable() -> None:
         target.update_posture(np.zeros(5), 1.0)
     assert target.posture is not None
     np.testing.assert_allclose(np.exp(target.posture) / np.exp(target.posture).sum(), 0.2, atol=1e-6)
+
+
+def test_the_edges_of_a_person_follow_those_that_are_measured() -> None:
+    one = known()
+    one.update_edges(np.full(2, np.nan), 0.4)
+    assert np.isnan(one.edges).all()
+    one.update_edges(np.array([-0.2, 0.1]), 0.4)
+    np.testing.assert_array_equal(one.edges, [-0.2, 0.1])
+    one.update_edges(np.full(2, np.nan), 0.4)
+    one.update_edges(np.array([-0.1, 0.1]), 0.4)
+    np.testing.assert_allclose(one.edges, [-0.16, 0.1])

@@ -64,7 +64,7 @@ class Schedule(NamedTuple):
         if not self.followed:
             return NO_DETECTIONS
         these = [known[row] for row in self.followed]
-        return Detections(
+        return Detections.of(
             np.array(list(self.followed.values())),
             np.array([one.score for one in these]),
             np.array([one.trees for one in these]),

@@ -61,7 +61,7 @@ class ColourFinder:
         found = self._detector.update(grey, frame.time_s, self._way, mount_of(here, grey.shape[0]))
         self._last_s, self._way = frame.time_s, Odometry()
         boxes = transfer_boxes(found.box, Viewpoint.of(here, (grey.shape[0], grey.shape[1])), here, there)
-        seen = Detections(boxes, self._config.believed * found.score, found.trees)
+        seen = Detections(boxes, self._config.believed * found.score, found.trees, found.edges)
         return seen.take(area(boxes) > 0.0)
 
     def accumulate_motion(self, frame: Frame) -> bool:
@@ -94,6 +94,7 @@ def merge_cameras(thermal: Detections, colour: Detections, config: ColourDetecti
         np.concatenate([thermal.box, colour.box[is_alone]]),
         np.concatenate([score, colour.score[is_alone]]),
         np.concatenate([thermal.trees, np.minimum(colour.score[is_alone], 0.0)]),
+        np.concatenate([thermal.edges, colour.edges[is_alone]]),
     )
     return both.take(np.argsort(-both.score, kind="stable"))
 

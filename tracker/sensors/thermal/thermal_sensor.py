@@ -1,7 +1,7 @@
 """The thermal sensor: boxes of people in the thermal image, with their appearance."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,10 +33,12 @@ class DetectionExplanation:
     Attributes:
         boxes: (M, 4) [px] in the thermal image.
         scores: (M,) log-odds that they are people.
+        edges: (M, 2) of whole people, as in `Detections`.
     """
 
     boxes: Floats
     scores: Floats
+    edges: Floats
 
 
 class ThermalSensor:
@@ -53,7 +55,9 @@ class ThermalSensor:
         self._config = PeopleTrackerConfig() if config is None else config
         self._detector = ScheduledDetector(self._config) if detector is None else detector
         self._view: tuple[Calibration | None, tuple[int, int], Viewpoint] | None = None
-        self._explanation = DetectionExplanation(boxes=np.empty((0, 4)), scores=np.empty(0))
+        self._explanation = DetectionExplanation(
+            boxes=np.empty((0, 4)), scores=np.empty(0), edges=np.empty((0, 2))
+        )
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -84,8 +88,9 @@ class ThermalSensor:
         existence, found = self._settings(view).existence, boxes.found
         found = found._replace(score=existence.trust * found.score + existence.lasting)
         described = self._described(frame, boxes._replace(found=found), expected, view)
-        self._explanation = DetectionExplanation(boxes=described.boxes, scores=described.scores)
-        return described
+        edges = found.joined(boxes.followed).edges
+        self._explanation = DetectionExplanation(boxes=described.boxes, scores=described.scores, edges=edges)
+        return replace(described, edges=edges)
 
     def detect_in(self, frame: Frame, box: Floats, predicted: Predictions) -> SensorDetections | None:
         """Describe a box (4,) in which a person is known to be."""

@@ -27,7 +27,7 @@ def shots(tmp_path_factory: pytest.TempPathFactory) -> list[ThermalImage]:
 def samples_of(images: list[ThermalImage], seed: int, count: int) -> CropSamples:
     drawn = versions(images, np.random.default_rng(seed), count)
     parts = [BoxRefinementTraining().sample(one, augments=count > 0) for one in drawn]
-    return CropSamples.join([CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop), *parts])
+    return CropSamples.join([CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop, 6), *parts])
 
 
 def test_boxes_are_about_people_and_offsets_lead_to_them(shots: list[ThermalImage]) -> None:
@@ -39,6 +39,10 @@ def test_boxes_are_about_people_and_offsets_lead_to_them(shots: list[ThermalImag
     assert 0.6 < looks.overlap.mean() < 0.95
     assert np.abs(looks.offsets[:, 0]).max() < 0.2
     assert np.abs(looks.offsets[:, 2]).max() < 0.7
+    edges = looks.offsets[:, 4:]
+    known = ~np.isnan(edges).any(axis=1)
+    assert known.any()
+    assert (edges[known, 0] < edges[known, 1]).all()
 
 
 def test_each_image_is_learned_from_four_times(shots: list[ThermalImage]) -> None:
@@ -77,28 +81,30 @@ WINDOW = np.array([[40.0, 50.0, 20.0, 80.0]])
 
 
 def test_the_loss_is_that_of_what_boxes_do_not_share_and_huber_s_of_places() -> None:
-    looks, weights = drawn_crops(FORM, 6), drawn_weights(FORM)
+    looks, weights = drawn_crops(FORM, 6, targets=6), drawn_weights(FORM)
     planes = normalise_crops(looks.crops)
     ours = BoxRefinementNetwork(weights).predict(planes, looks.features)
     window = np.repeat(WINDOW, 6, axis=0)
-    shared = iou(decode_boxes(window, ours), decode_boxes(window, looks.offsets.astype(np.float64)))
+    true = looks.offsets[:, :4].astype(np.float64)
+    shared = iou(decode_boxes(window, ours[:, :4]), decode_boxes(window, true))
     off = np.abs(ours - looks.offsets) / BoxRefinementNetwork.SCALES
     bent = np.where(off < 1.0, off**2 / 2.0, off - 0.5)
     assert bent.max() < 8.0
     told = loss(weights, planes, looks)
-    assert float(told[0]) == pytest.approx(4.0 * (1.0 - shared).mean() + 0.3 * bent.mean(), rel=1e-3)
+    units = 0.3 * bent[:, :4].mean() + 0.6 * bent[:, 4:].mean()
+    assert float(told[0]) == pytest.approx(4.0 * (1.0 - shared).mean() + units, rel=1e-3)
     assert float(told[1]["units off"]) == pytest.approx(off.mean(), rel=1e-3)
 
 
 def test_somebody_else_s_box_teaches_no_units() -> None:
-    looks, weights = drawn_crops(FORM, 3), drawn_weights(FORM)
+    looks, weights = drawn_crops(FORM, 3, targets=6), drawn_weights(FORM)
     planes = normalise_crops(looks.crops)
     far = replace(looks, offsets=looks.offsets + np.float32(3.0))
-    assert float(loss(weights, planes, far)[0]) == pytest.approx(4.0 + 0.3 * 8.0, rel=1e-5)
+    assert float(loss(weights, planes, far)[0]) == pytest.approx(4.0 + (0.3 + 0.6) * 8.0, rel=1e-5)
 
 
 def test_the_score_of_what_was_found_says_nothing_of_where() -> None:
-    looks, weights = drawn_crops(FORM, 3), drawn_weights(FORM)
+    looks, weights = drawn_crops(FORM, 3, targets=6), drawn_weights(FORM)
     planes, other = normalise_crops(looks.crops), looks.features.copy()
     other[:, 0] += 1.0
     one, same = (loss(weights, planes, replace(looks, features=n)) for n in (looks.features, other))

@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -66,7 +67,7 @@ def test_people_are_told_from_others_after_a_short_lesson() -> None:
 @pytest.mark.usefixtures("small")
 def test_where_people_are_is_told_after_a_short_lesson() -> None:
     form = BoxRefinementNetwork.ARCHITECTURE
-    looks, others = drawn_crops(form, 512), drawn_crops(form, 80, seed=5)
+    looks, others = (drawn_crops(form, *drawn, targets=6) for drawn in ((512,), (80, 5)))
     looks, others = (each.take(np.flatnonzero(each.overlap > 0.5)) for each in (looks, others))
     weights = fit_crops(form, BoxRefinementTraining().loss, looks, epochs=20, dropout=0.2)
     aside = BoxRefinementNetwork(weights).predict(normalise_crops(others.crops), others.features)[:, 0]
@@ -81,6 +82,27 @@ def test_the_same_lesson_gives_the_same_network() -> None:
     one, same = (fit_crops(form, RescoringTraining().loss, looks, epochs=1, dropout=0.4) for _ in range(2))
     for name, weights in one.items():
         np.testing.assert_array_equal(same[name], weights)
+
+
+def test_mirrored_people_have_their_edges_on_the_other_side() -> None:
+    looks = drawn_crops(BoxRefinementNetwork.ARCHITECTURE, 5, targets=6)
+    left, right = looks.offsets[:, 4], looks.offsets[:, 5]
+    mirrored = looks.mirror()
+    np.testing.assert_array_equal(mirrored.offsets[:, 4:], np.stack([-right, -left], axis=1))
+    np.testing.assert_array_equal(mirrored.offsets[:, 0], -looks.offsets[:, 0])
+    np.testing.assert_array_equal(mirrored.mirror().offsets, looks.offsets)
+
+
+def test_unknown_edges_do_not_change_the_loss() -> None:
+    training, form = BoxRefinementTraining(), BoxRefinementNetwork.ARCHITECTURE
+    looks = drawn_crops(form, 6, targets=6)
+    unknown = looks.offsets.copy()
+    unknown[:, 4:] = np.nan
+    outputs = jnp.asarray(np.random.default_rng(1).normal(0.0, 1.0, (6, 6)))
+    other = outputs.at[:, 4:].add(3.0)
+    hidden = replace(looks, offsets=unknown)
+    assert training.loss(outputs, hidden)[0] == training.loss(other, hidden)[0]
+    assert training.loss(outputs, looks)[0] != training.loss(other, looks)[0]
 
 
 def test_too_little_to_learn_from_is_refused() -> None:
@@ -134,7 +156,7 @@ def test_overlap_of_offsets_is_that_of_the_boxes() -> None:
     rng = np.random.default_rng(0)
     told, true = (rng.normal(0.0, 0.03, (20, 4)) + np.array([0.0, 0.0, 0.0, 0.22]) for _ in range(2))
     before = rng.random(20).astype(np.float32)
-    none = CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop)
+    none = CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop, BoxRefinementTraining.TARGETS)
     looks = replace(none, offsets=true.astype(np.float32), overlap=before)
     window = np.tile([40.0, 50.0, 30.0, 80.0], (20, 1))
     expected = iou(decode_boxes(window, told), decode_boxes(window, true))
@@ -177,23 +199,21 @@ def test_one_of_ten_is_held_back_and_sequences_that_are_there_are_used(
 @pytest.mark.thorough
 @pytest.mark.usefixtures("small", "drawn")
 @pytest.mark.parametrize(
-    ("model", "training", "network", "result"),
+    ("model", "network", "result"),
     [
-        ("rescoring", RescoringTraining, RescoringNetwork, "log loss"),
-        ("box-refinement", BoxRefinementTraining, BoxRefinementNetwork, "mean IoU"),
+        ("rescoring", RescoringNetwork, "log loss"),
+        ("box-refinement", BoxRefinementNetwork, "mean IoU"),
     ],
 )
 def test_training_leaves_a_network_that_says_how_good_it_is(
     model: str,
-    training: type[crop_samples.CropTraining],
     network: type[RescoringNetwork | BoxRefinementNetwork],
     result: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(training, "EPOCHS", 1)
     monkeypatch.setattr(crop_samples, "BATCH", 8)
-    assert run_cli("train", model, "--seeds", 10, "--out", tmp_path, "--workers", 1) == 0
+    assert run_cli("train", model, "--seeds", 10, "--epochs", 1, "--out", tmp_path, "--workers", 1) == 0
     about = network.load(tmp_path / f"{model}.npz").about
     assert about["trained on"].startswith("9 sequences, ")
     assert result in about["on 1 other sequences"]
@@ -203,7 +223,7 @@ def test_training_leaves_a_network_that_says_how_good_it_is(
 def test_training_that_cannot_be_evaluated_is_refused_before_it_begins(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    none = CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop)
+    none = CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop, BoxRefinementTraining.TARGETS)
     monkeypatch.setattr(BoxRefinementTraining, "sample", lambda *_, **__: none)
     chosen = ("--seeds", 10, "--out", tmp_path, "--workers", 1)
     assert run_cli("train", "box-refinement", *chosen) == 2

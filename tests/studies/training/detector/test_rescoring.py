@@ -33,7 +33,7 @@ def shots(tmp_path_factory: pytest.TempPathFactory) -> list[ThermalImage]:
 def looked(shots: list[ThermalImage], *, varies: bool, seed: int = 0) -> CropSamples:
     drawn = versions(shots, np.random.default_rng(seed), 2 if varies else 0)
     parts = [RescoringTraining().sample(one, augments=varies) for one in drawn]
-    return CropSamples.join([CropSamples.empty(RescoringNetwork.ARCHITECTURE.crop), *parts])
+    return CropSamples.join([CropSamples.empty(RescoringNetwork.ARCHITECTURE.crop, 4), *parts])
 
 
 def test_what_is_proposed_is_told_with_whom_it_shows(shots: list[ThermalImage]) -> None:
@@ -97,7 +97,7 @@ def test_who_is_neither_somebody_nor_nobody_does_not_count() -> None:
     ("overlap", "told"), [([0.9, 0.8, 0.3], "2 of 2"), ([0.0, 0.1], "0 of 2"), ([], "0 of 0")]
 )
 def test_people_alone_or_none_are_refused(overlap: list[float], told: str) -> None:
-    none = CropSamples.empty(RescoringNetwork.ARCHITECTURE.crop)
+    none = CropSamples.empty(RescoringNetwork.ARCHITECTURE.crop, 4)
     with refused(f"{told} validation detections are people", "use more sequences"):
         RescoringTraining().check(replace(none, overlap=np.array(overlap, np.float32)))
 

@@ -26,6 +26,9 @@ _LAYERS: Final = tuple(
     NetworkLayer(*one) for one in ((5, 2, 24), (3, 2, 48), (3, 1, 64), (3, 2, 96), (3, 1, 96))
 )
 
+EDGES: Final = 2
+"""Numbers that encode the left and right edge of a person: see `encode_edges`."""
+
 # The full correction would be best on rendered images; on images of real cameras the network is
 # overconfident, most of all with an unknown mount, as the robot's own camera has a known one.
 TRUSTED: Final = 0.5
@@ -61,19 +64,19 @@ class RescoringNetwork(CropNetwork):
 
 
 class BoxRefinementNetwork(CropNetwork):
-    """Predicts offsets of boxes, without scores; its resolution is 1.6 times as high."""
+    """Predicts offsets of boxes and the edges of people, without scores, at 1.6 times the resolution."""
 
     ARCHITECTURE: ClassVar[Architecture] = Architecture(
-        CropSize(96, 72, 1.3), FEATURES - 1, (*_LAYERS, NetworkLayer(3, 2, 128)), 160, OFFSETS
+        CropSize(96, 72, 1.3), FEATURES - 1, (*_LAYERS, NetworkLayer(3, 2, 128)), 160, OFFSETS + EDGES
     )
     MODEL: ClassVar[str] = "box-refinement"
-    SCALES: ClassVar[Floats] = np.array([0.015, 0.03, 0.05, 0.03])
-    """Units of the outputs: offsets as in `encode_boxes`."""
-    USUAL: ClassVar[Floats] = np.array([0.0, 0.0, 0.0, 0.22])
+    SCALES: ClassVar[Floats] = np.array([0.015, 0.03, 0.05, 0.03, 0.04, 0.04])
+    """Units of the outputs: offsets as in `encode_boxes`, and edges as in `encode_edges`."""
+    USUAL: ClassVar[Floats] = np.array([0.0, 0.0, 0.0, 0.22, -0.18, 0.18])
     """Values at outputs of 0."""
 
     def predict(self, planes: Planes, features: Planes, workspace: Workspace | None = None) -> Floats:
-        """Return offsets (N, 4) for crops (N, 96, 72, 3) with features (N, 9) without the score."""
+        """Return offsets and edges (N, 6) for crops (N, 96, 72, 3) with features (N, 9) without the score."""
         outputs = self.outputs(planes, features, workspace)
         return np.asarray(outputs.astype(np.float64) * self.SCALES + self.USUAL)
 
@@ -96,7 +99,7 @@ def rescore(
     predicted = network.predict(*_inputs(network, grey, change, first, mount), workspace)
     trusted = TRUSTED_WITHOUT_MOUNT if mount is None else TRUSTED
     score = first.score + trusted * (predicted[:, 0] - first.score)
-    rescored = Detections(decode_boxes(first.box, predicted[:, 1:]), score, first.trees)
+    rescored = Detections.of(decode_boxes(first.box, predicted[:, 1:]), score, first.trees)
     return suppress(rescored.take(score >= least_score))
 
 
@@ -111,8 +114,17 @@ def refine_boxes(
     """Refine the boxes of detections in an image (H, W), given the change of its greys (H, W)."""
     if len(found.box) == 0:
         return found
-    offsets = network.predict(*_inputs(network, grey, change, found, mount), workspace)
-    return found._replace(box=decode_boxes(found.box, offsets))
+    predicted = network.predict(*_inputs(network, grey, change, found, mount), workspace)
+    offsets, edges = predicted[:, :OFFSETS], predicted[:, OFFSETS:]
+    # Edges are relative to the given boxes, and become relative to the refined ones.
+    scale = np.exp(offsets[:, [2]])
+    return found._replace(box=decode_boxes(found.box, offsets), edges=(edges - offsets[:, [0]]) / scale)
+
+
+def encode_edges(window: Floats, whole: Floats) -> Floats:
+    """Return left and right edges (N, 2) of boxes (N, 4), from the middles of windows (N, 4), in heights."""
+    left = whole[:, 0] - window[:, 0] - window[:, 2] / 2.0
+    return np.stack([left, left + whole[:, 2]], axis=1) / window[:, [3]]
 
 
 def _inputs(

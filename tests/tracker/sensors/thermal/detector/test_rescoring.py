@@ -11,6 +11,7 @@ from peopleboy.tracker.sensors.detections import Detections
 from peopleboy.tracker.sensors.thermal.detector.rescoring import (
     BoxRefinementNetwork,
     RescoringNetwork,
+    encode_edges,
     refine_boxes,
     rescore,
 )
@@ -86,6 +87,24 @@ def test_who_knows_nothing_leaves_people_where_they_are() -> None:
     np.testing.assert_allclose([top, height], FIRST.box[:, [1, 3]].T)
 
 
+def test_edges_are_those_of_the_image_whatever_becomes_of_the_box() -> None:
+    weights = drawn_weights(BoxRefinementNetwork.ARCHITECTURE, 0.0)
+    weights["last_bias"] = np.array([2.0, 1.0, -3.0, 0.5, 1.0, 2.0], np.float32)
+    network = BoxRefinementNetwork(weights)
+    refined = refine_boxes(network, image(), image(), FIRST, MOUNT)
+
+    def edges(found: Detections, relative: np.ndarray) -> np.ndarray:
+        middle = found.box[:, [0]] + found.box[:, [2]] / 2.0
+        return np.asarray(middle + relative * found.box[:, [3]])
+
+    predicted = np.array([-0.18 + 0.04, 0.18 + 0.08])
+    np.testing.assert_allclose(edges(refined, refined.edges), edges(FIRST, predicted), rtol=1e-6)
+    whole = np.column_stack([FIRST.box[:, 0] - 5.0, FIRST.box[:, 1], [30.0, 20.0], FIRST.box[:, 3]])
+    np.testing.assert_allclose(
+        edges(FIRST, encode_edges(FIRST.box, whole)), whole[:, [0]] + whole[:, [2]] * [0.0, 1.0]
+    )
+
+
 def test_each_is_placed_by_itself() -> None:
     network = BoxRefinementNetwork(drawn_weights(BoxRefinementNetwork.ARCHITECTURE))
     both = refine_boxes(network, smooth_image(), smooth_image(), FIRST, MOUNT)
@@ -107,5 +126,6 @@ def test_the_page_says_how_good_the_shipped_ones_are(network: type[CropNetwork])
     about = network.shipped().about
     assert "sequences" in about["trained on"]
     page = " ".join(PAGE.read_text(encoding="utf-8").split())
-    numbers = re.findall(r"\d+(?:\.\d+)?", about["on 200 other sequences"])
+    (result,) = (text for key, text in about.items() if key.endswith("other sequences"))
+    numbers = re.findall(r"\d+(?:\.\d+)?", result)
     assert re.search(".{1,80}".join(map(re.escape, numbers)), page)
