@@ -58,6 +58,11 @@ _ALL: Final = "all"
     type=click.Choice((*ALTERATIONS, _ALL)),
     help="Also evaluate on --clips altered like this, for robustness; may be repeated.",
 )
+@click.option(
+    "--real-training",
+    is_flag=True,
+    help="Also evaluate on each of --clips the detector with networks that are fine-tuned on all others.",
+)
 @click.option("--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="Seeds per tracker.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Number of processes.")
 def main(clips: Path | None, peers: Sequence[str], alterations: Sequence[str], **how: Any) -> None:

@@ -82,6 +82,7 @@ def compare_clips(
     seeds: int,
     jobs: int,
     alterations: Sequence[str] = (),
+    real_training: bool = False,
 ) -> None:
     """Evaluate trackers and peers on clips, print a table, and write its metrics as JSON.
 
@@ -95,6 +96,7 @@ def compare_clips(
         seeds: number of seeds per tracker, from 0 on.
         jobs: number of processes.
         alterations: names of `ALTERATIONS`; each clip is evaluated altered by each of them, too.
+        real_training: whether to evaluate networks that are trained on the other clips, too.
 
     Raises:
         BadInput: clips or trackers cannot be used.
@@ -112,6 +114,11 @@ def compare_clips(
                 (name, one): [ClipTask(clip, one, seed, rate_hz) for seed in range(seeds)] for one in trackers
             }
             tasks |= ours | {(name, peer): [ClipTask(clip, peer, 0)] for peer in peers}
+        if real_training:
+            from benchmarks.footage.real_training import NAME, real_training_tasks  # needs JAX
+
+            more = real_training_tasks(given, rate_hz, Path(folder), Workers(jobs))
+            tasks |= {(task.clip.name, NAME): [task] for task in more}
         found = compare(tasks, Workers(jobs), "clips", unit="frames")
     metrics = {
         (name, tracker): clip_metrics(clips[name], results) for (name, tracker), results in found.items()

@@ -147,23 +147,37 @@ class ClipTask:
         """
         contestant = make_clip_tracker(self.tracker, self.seed)
         name = DEFAULT_TRACKER if self.tracker in PEERS else self.tracker
-        rate_hz = self.rate_hz
-        if self.clip.step > 1:
-            rate_hz = (rate_hz or DEFAULT_RATE_HZ) / self.clip.step
-        views = open_views(TrackOptions(footage=self.clip.folder, out=Path(), tracker=name, rate_hz=rate_hz))
-        rows: list[tuple[int, int, Floats]] = []
-        detected: list[tuple[int, int, Floats, float]] = []
-        times_ms = []
-        for number, frame in enumerate(islice(views, self.clip.frames), start=1):
-            frame_ms, (boxes, ids) = timed_ms(partial(contestant.step, frame))
-            times_ms.append(frame_ms)
-            rows += [(number, identity, box) for box, identity in zip(boxes, ids, strict=True)]
-            if (found := contestant.detections) is not None:
-                every = enumerate(zip(found.box, found.confidence.tolist(), strict=True))
-                detected += [(number, k, box, confidence) for k, (box, confidence) in every]
-            report_progress(number)
-        frame_s = float(np.median(times_ms)) / 1000.0
-        return ClipResult(score_clip(self.clip, rows), frame_s, TrackBoxes.from_rows(detected))
+        return run_clip(self.clip, contestant, name, self.rate_hz, report_progress)
+
+
+def run_clip(
+    clip: RealClip, contestant: Detecting, name: str, rate_hz: float | None, report_progress: ReportProgress
+) -> ClipResult:
+    """Run a tracker on a clip, from the first frame on.
+
+    Args:
+        clip: the clip.
+        contestant: the tracker.
+        name: name of the tracker whose cameras the clip is to give.
+        rate_hz: frame rate of the camera; None for the default of folders.
+        report_progress: takes the number of frames that are done.
+    """
+    if clip.step > 1:
+        rate_hz = (rate_hz or DEFAULT_RATE_HZ) / clip.step
+    views = open_views(TrackOptions(footage=clip.folder, out=Path(), tracker=name, rate_hz=rate_hz))
+    rows: list[tuple[int, int, Floats]] = []
+    detected: list[tuple[int, int, Floats, float]] = []
+    times_ms = []
+    for number, frame in enumerate(islice(views, clip.frames), start=1):
+        frame_ms, (boxes, ids) = timed_ms(partial(contestant.step, frame))
+        times_ms.append(frame_ms)
+        rows += [(number, identity, box) for box, identity in zip(boxes, ids, strict=True)]
+        if (found := contestant.detections) is not None:
+            every = enumerate(zip(found.box, found.confidence.tolist(), strict=True))
+            detected += [(number, k, box, confidence) for k, (box, confidence) in every]
+        report_progress(number)
+    frame_s = float(np.median(times_ms)) / 1000.0
+    return ClipResult(score_clip(clip, rows), frame_s, TrackBoxes.from_rows(detected))
 
 
 def make_clip_tracker(name: str, seed: int) -> Detecting:
