@@ -13,6 +13,7 @@ import numpy as np
 
 from benchmarks.footage.real_clips import ClipResult, RealClip, run_clip
 from benchmarks.peers.ours import Ours
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.options import DEFAULT_RATE_HZ, TrackOptions
 from peopleboy.scenarios.footage.views import open_views
 from peopleboy.scenarios.running.engine.task import ReportProgress, Workers
@@ -155,8 +156,16 @@ def real_training_tasks(
         rate_hz: frame rate of the cameras; None for the default of folders.
         folder: for the samples.
         workers: pool that collects them.
+
+    Raises:
+        BadInput: there are fewer than two such clips.
+        TasksFailed: samples of some clips could not be collected.
     """
     usable = [clip for clip in clips if not clip.given.is_single]
+    if len(usable) < 2:
+        raise BadInput(
+            f"--real-training: needs two or more clips with everybody annotated, got {len(usable)}"
+        )
     collected = [
         SampleTask(_path(folder, clip.name, one.NETWORK), _samples, (clip, one, rate_hz))
         for clip in usable

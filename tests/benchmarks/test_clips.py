@@ -12,6 +12,7 @@ from benchmarks.footage.__main__ import main
 from benchmarks.footage.altered_clips import ALTERATIONS, alter, altered_name
 from benchmarks.footage.compare_clips import OUT, change_of_hota, clip_metrics
 from benchmarks.footage.real_clips import ClipResult, open_clips, score_clip
+from benchmarks.footage.real_training import annotated_images
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
@@ -172,3 +173,28 @@ def test_change_of_hota_is_a_mean_over_clips_that_have_one() -> None:
     }
     assert change_of_hota(metrics, "t", ["a", "b", "c"], "ironbow") == -2.5
     assert change_of_hota(metrics, "t", ["c"], "ironbow") is None
+
+
+def test_images_to_train_on_have_the_annotated_people_without_margins(tmp_path: Path) -> None:
+    write_clip(tmp_path / "street")
+    (clip,) = open_clips(tmp_path)
+    images = list(annotated_images(clip, 4))
+    assert len(images) == 4
+    for number, image in zip((3, 6, 9, 12), images, strict=True):
+        left, top, width, height = WALKER
+        assert image.grey.shape == (120, 160)
+        (whole,), (torso,) = image.whole, image.box  # of the bicycle, nothing is known
+        tall = height / 1.04
+        np.testing.assert_allclose(
+            whole, (left + number + 0.04 * tall - 0.5, top + 0.01 * tall - 0.5, width - 0.08 * tall, tall)
+        )
+        assert torso[0] + torso[2] / 2.0 == pytest.approx(whole[0] + whole[2] / 2.0)
+        np.testing.assert_allclose(torso[[1, 3]], whole[[1, 3]])
+
+
+def test_training_on_other_clips_needs_other_clips(tmp_path: Path) -> None:
+    write_clip(tmp_path / "street")
+    write_clip(tmp_path / "alone", single=True)
+    failed = call("--clips", tmp_path, "--peer", "none", "--real-training").exception
+    assert isinstance(failed, BadInput)
+    assert_names(str(failed), "two or more clips", "got 1")
