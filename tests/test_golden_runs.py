@@ -29,7 +29,7 @@ MADE_WITH = {
 PROCESSOR = "znver5"
 HASHES = {
     ("crossing_3", "contour"): "dcaf6247e871935960f88895949bc920",
-    ("crossing_2", "detection"): "af8011b0cd22f4f531ea81febcf1f0ad",
+    ("crossing_2", "detection"): "b8f52b2c5131bf51218e186cbbac7ca8",
     ("single_follow", "truth"): "65cefeb24b88786a3433468e369ab852",
 }
 

@@ -73,7 +73,7 @@ def test_of_other_explanations_nothing_is_drawn() -> None:
 
 def test_what_is_proposed_has_its_corners_drawn_blue_if_it_is_rather_somebody_than_not() -> None:
     boxes = np.array([(20.0, 30.0, 10.0, 40.0), (100.0, 50.0, 20.0, 60.0)])
-    proposed = DetectionExplanation(boxes=boxes, scores=np.array([1.5, -0.5]))
+    proposed = DetectionExplanation(boxes=boxes, scores=np.array([1.5, -0.5]), edges=np.full((2, 2), np.nan))
     told = draw_explained_lines(proposed, replace(made.make_tick(10), explanation=proposed))
     assert told.line.shape == (8, 3, 2)
     assert told.colour.tolist() == [list(LIKELY)] * 4 + [list(UNLIKELY)] * 4
