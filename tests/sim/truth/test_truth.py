@@ -44,9 +44,9 @@ class Scene:
 
 def draw_alone(world: SimulatedWorld, k: int, pose: np.ndarray) -> np.ndarray:
     """(3 H, 3 W) where TinyRenderer draws a person in a PyBullet world of its own, image in the middle."""
-    somebody = world.crowd.people[k]
+    person = world.crowd.people[k]
     with Bullet() as bullet:
-        for part, part_pose in zip(somebody.model.parts, somebody.poses(), strict=True):
+        for part, part_pose in zip(person.model.parts, person.poses(), strict=True):
             bullet.add_part(part.name, part.shapes)
             angle = cv2.Rodrigues(part_pose[:3, :3])[0].ravel()
             half = np.linalg.norm(angle) / 2.0

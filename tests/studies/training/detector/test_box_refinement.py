@@ -90,10 +90,10 @@ def test_the_loss_is_that_of_what_boxes_do_not_share_and_huber_s_of_places() -> 
     off = np.abs(ours - looks.offsets) / BoxRefinementNetwork.SCALES
     bent = np.where(off < 1.0, off**2 / 2.0, off - 0.5)
     assert bent.max() < 8.0
-    told = loss(weights, planes, looks)
+    computed = loss(weights, planes, looks)
     units = 0.3 * bent[:, :4].mean() + 0.6 * bent[:, 4:].mean()
-    assert float(told[0]) == pytest.approx(4.0 * (1.0 - shared).mean() + units, rel=1e-3)
-    assert float(told[1]["units off"]) == pytest.approx(off.mean(), rel=1e-3)
+    assert float(computed[0]) == pytest.approx(4.0 * (1.0 - shared).mean() + units, rel=1e-3)
+    assert float(computed[1]["units off"]) == pytest.approx(off.mean(), rel=1e-3)
 
 
 def test_somebody_else_s_box_teaches_no_units() -> None:
