@@ -277,7 +277,7 @@ class SimulatedWorld:
             config.seed,
             is_visible=config.renderer != BLIND,
             detail=config.detail,
-            bodies=config.bodies,
+            bodies=config.body_shape,
         )
         self._known_people = known_people(self.crowd.people)
         self._handling = Handling(physics, config.place, self.crowd.people)

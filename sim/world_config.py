@@ -26,7 +26,8 @@ class WorldConfig:
         control_hz: [Hz] commands and images.
         renderer: "raycast" or "bullet"; "none" for a world without images, which is several times faster.
         physics: "bullet", PyBullet's dynamics; or "kinematic", rolling without slip, which needs no PyBullet.
-        bodies: "capsules", or "skins" for people with the bodies of children, adults and elders.
+        bodies: "capsules", or "skins" for people with the bodies of children, adults and elders; None for
+            what suits the detail, see `body_shape`.
         detail: "plain", or "full" for finely drawn people and surfaces, which make images harder.
 
     Raises:
@@ -43,7 +44,7 @@ class WorldConfig:
     renderer: str = "raycast"
     physics: PhysicsName = field(default_factory=default_physics)
     detail: Detail = "plain"
-    bodies: BodyShape = "capsules"
+    bodies: BodyShape | None = None
 
     def __post_init__(self) -> None:
         """Refuse rates that do not divide each other, and invalid seeds."""
@@ -63,3 +64,10 @@ class WorldConfig:
             raise BadInput("renderer 'bullet' cannot draw skins; choose raycast, or bodies: capsules")
         if self.seed < 0:
             raise BadInput(f"seed {self.seed} must be 0 or more")
+
+    @property
+    def body_shape(self) -> BodyShape:
+        """The shape of people: with full detail skins, if another one is not set and skins can be drawn."""
+        if self.bodies is not None:
+            return self.bodies
+        return "skins" if self.detail == "full" and self.renderer != "bullet" else "capsules"

@@ -187,13 +187,13 @@ class ScenarioSpec:
         ),
     ] = "plain"
     bodies: Annotated[
-        BodyShape,
+        BodyShape | None,
         Field(
             description="shape of people. `skins` are meshes of children, adults and elders, which "
             "pinhole cameras see; panoramic cameras, laser scanners and mirrors see capsules in their place. "
-            "The trackers were trained on `capsules`"
+            "By default, `skins` with `detail: full`, and `capsules` with `detail: plain`"
         ),
-    ] = "capsules"
+    ] = None
     physics: Annotated[
         PhysicsName,
         Field(

@@ -3,13 +3,11 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Final, get_args
+from typing import Any, Final
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.sim.people.equipment import Equipment
-from peopleboy.sim.people.motion.gait_styles import GaitName
 from peopleboy.wording import hint
 
 
@@ -72,6 +70,7 @@ RANGES: Final[Mapping[str, Range]] = {
     "people": Range(low=0, high=10, unit="", what="number of people, as far as they fit", is_whole=True),
     "points": Range(low=1, high=5, unit="", what="number of waypoints of a path", is_whole=True),
     "speed": Range(low=0.4, high=1.8, unit="m/s", what="walking speed"),
+    "running_speed": Range(low=1.8, high=2.4, unit="m/s", what="running speed"),
     "pause": Range(low=0.3, high=4.0, unit="s", what="pause at a waypoint"),
     "camera_height": Range(low=0.4, high=1.8, unit="m", what="height of the cameras above the floor"),
     "pitch": Range(low=-15.0, high=15.0, unit="deg", what="pitch of the cameras; positive is down"),
@@ -117,24 +116,27 @@ SHARES: Final[Mapping[str, Mapping[str, float]]] = {
     "gain": {"percentile": 0.3, "plateau": 0.7},
     "command": {"straight": 0.4, "curve": 0.35, "turn": 0.15, "stop": 0.1},
     "posture": {
-        "standing": 0.6, "sitting": 0.1, "bending": 0.1, "arms_crossed": 0.1, "arms_raised": 0.1,
-        "crouching": 0.0, "lying": 0.0, "fallen": 0.0, "kneeling": 0.0,
+        "standing": 0.55, "sitting": 0.1, "bending": 0.1, "arms_crossed": 0.07, "arms_raised": 0.06,
+        "crouching": 0.04, "kneeling": 0.03, "lying": 0.03, "fallen": 0.02,
     },
     "arms": {
-        "swinging": 0.85, "crossed": 0.1, "raised": 0.05,
-        "in_pockets": 0.0, "telephone": 0.0, "phone_in_hand": 0.0,
+        "swinging": 0.8, "crossed": 0.06, "raised": 0.04, "in_pockets": 0.03, "telephone": 0.03,
+        "phone_in_hand": 0.04,
     },
-    "bodies": {"capsules": 1.0, "skins": 0.0},
-    "age": {"adult": 1.0, "child": 0.0, "elder": 0.0},
-    "gait": {name: float(name == "usual") for name in get_args(GaitName)},
-    "equipment": {name: float(name == "nothing") for name in get_args(Equipment)},
+    "bodies": {"skins": 1.0, "capsules": 0.0},
+    "age": {"adult": 0.75, "elder": 0.15, "child": 0.1},
+    "gait": {
+        "usual": 0.7, "strolling": 0.08, "brisk": 0.08, "old": 0.04, "heavy": 0.04, "shuffling": 0.02,
+        "running": 0.04,
+    },
+    "equipment": {
+        "nothing": 0.88, "box": 0.02, "walking_frame": 0.01, "trolley": 0.02, "pushchair": 0.02,
+        "wheelchair": 0.01, "bicycle": 0.04,
+    },
     "light_changes": {"never": 0.8, "once": 0.2},
     "clothes": {"as people dress": 0.75, "all different": 0.25},
 }  # fmt: skip
-"""Values with a categorical distribution, with their probabilities.
-
-Trackers were trained, and results measured, without those with a probability of 0.
-"""
+"""Values with a categorical distribution, with their probabilities."""
 
 ODDS: Final[Mapping[str, tuple[float, str]]] = {
     "has_sun": (0.4, "the sun shines into the room or onto the street"),

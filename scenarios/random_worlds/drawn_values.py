@@ -50,7 +50,7 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
     place, robot = played["place"], played["robot"]
     warm, camera = place["temperatures"], robot["cameras"]["thermal"]
     people, things = played["people"], played["things"]
-    points = [point for person in people for point in person["path"]]
+    pauses = [point for person in people for point in person["path"] if point["pause_s"] > 0.0]
     air = warm["surroundings_c"]
     size = place["kind"] if place["kind"] in ("room", "street") else "corridor"
     lengths = [place[key] for key in ("length_m", "first_m", "second_m", "stem_m", "bar_m") if key in place]
@@ -79,9 +79,10 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
         **{key: [person[key] for person in people] for key in ("age", "gait", "arms", "equipment")},
         **_bearings(people, played["drawn"]["seed"]),
         "points": [len(person["path"]) for person in people],
-        "speed": [point["speed_m_s"] for point in points],
-        "pause": [point["pause_s"] for point in points if point["pause_s"] > 0.0],
-        "posture": [point["posture"] for point in points if point["pause_s"] > 0.0],
+        "speed": _speeds(person for person in people if person["gait"] != "running"),
+        "running_speed": _speeds(person for person in people if person["gait"] == "running"),
+        "pause": [point["pause_s"] for point in pauses],
+        "posture": [point["posture"] for point in pauses],
         "camera_height": [camera["mount_m"][2]],
         **{name: [camera[key]] for name, key in _CAMERA.items() if key in camera},
         "robot": ["drives" if robot["behaviour"] == "scripted" else "stands"],
@@ -89,6 +90,10 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
         "drive_turn": [one["angular_deg_s"] for one in robot["commands"] if one["angular_deg_s"] != 0.0],
         "light": [step["level"] for step in played["lights"]],
     }
+
+
+def _speeds(people: Iterable[Mapping[str, Any]]) -> list[float]:
+    return [point["speed_m_s"] for person in people for point in person["path"]]
 
 
 def _bearings(people: Sequence[Mapping[str, Any]], seed: int) -> dict[str, list[str]]:

@@ -32,7 +32,6 @@ from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.pieces import Kind
 
 _WAYPOINT_TRIES: Final = 12
-_RUNS_M_S: Final = 1.7  # a runner's speed is this and 0.4 times that of a walk
 _NEAREST_M: Final = 1.0  # minimum distance to the robot at the start
 
 
@@ -80,16 +79,16 @@ def _longer(draws: Draws, scene: Data, ground: Ground, person: Data, is_in_view:
     """Append a reachable waypoint to a path; if none is found, append one only to an empty path."""
     path: list[Data] = person["path"]
     for _ in range(_WAYPOINT_TRIES):
-        longer = [*path, _suited(_waypoint(draws, scene, is_in_view and not path), person)]
+        longer = [*path, _suited(draws, _waypoint(draws, scene, is_in_view and not path), person)]
         if ground.fault(validated(PersonSpec, person | {"path": longer})) is None:
             return longer
     return path or longer
 
 
-def _suited(waypoint: Data, person: Data) -> Data:
+def _suited(draws: Draws, waypoint: Data, person: Data) -> Data:
     """Change a waypoint so that its person can do what it says: runners are fast, and nothing is let go."""
     if person.get("gait") == "running":
-        waypoint["speed_m_s"] = rounded(_RUNS_M_S + 0.4 * waypoint["speed_m_s"])
+        waypoint["speed_m_s"] = draws.number("running_speed")
     if "equipment" in person and "posture" in waypoint:
         waypoint["posture"] = "standing"
     return waypoint
@@ -226,8 +225,7 @@ def random_world(seed: int, duration_s: float = LASTS_S, distribution: Distribut
         "lights": _lights(draws, duration_s),
     }
     kinds = Draws(stream(seed, "random_people"), distribution)
-    if (bodies := kinds.one_of("bodies")) != "capsules":
-        scene["bodies"] = bodies
+    scene["bodies"] = kinds.one_of("bodies")
     place = draw_place(draws)
     scene |= {"place": place, "robot": draw_robot(draws, place, duration_s)}
     for _ in range(draws.count("doors")):

@@ -254,6 +254,6 @@ class BatchCameras:
 def shared_cameras(world: SimulatedWorld) -> tuple[tuple[str, CameraConfig], ...] | None:
     """Return the key shared by worlds that are rendered together; None for a world that renders alone."""
     config = world.config
-    if config.renderer != "raycast" or config.detail != "plain" or config.bodies != "capsules":
+    if config.renderer != "raycast" or config.detail != "plain" or config.body_shape != "capsules":
         return None
     return tuple(world.cameras.items()) if all(map(has_stage, world.cameras.values())) else None

@@ -35,20 +35,7 @@ _PEOPLE: Final[Mapping[str, Mapping[str, float]]] = {
         "standing": 0.3, "sitting": 0.15, "bending": 0.14, "crouching": 0.1, "lying": 0.08, "fallen": 0.07,
         "arms_crossed": 0.06, "arms_raised": 0.06, "kneeling": 0.04,
     },
-    "arms": {
-        "swinging": 0.8, "crossed": 0.06, "raised": 0.04, "in_pockets": 0.03, "telephone": 0.03,
-        "phone_in_hand": 0.04,
-    },
     "bodies": {"capsules": 0.4, "skins": 0.6},
-    "age": {"adult": 0.75, "elder": 0.15, "child": 0.1},
-    "gait": {
-        "usual": 0.64, "strolling": 0.08, "brisk": 0.08, "old": 0.05, "heavy": 0.04, "shuffling": 0.03,
-        "running": 0.08,
-    },
-    "equipment": {
-        "nothing": 0.84, "box": 0.02, "walking_frame": 0.01, "trolley": 0.03, "pushchair": 0.02,
-        "wheelchair": 0.02, "bicycle": 0.06,
-    },
 }  # fmt: skip
 """Kinds of people, as far as they differ from those of other random worlds."""
 _HIGH: Final[Mapping[str, tuple[float, float]]] = {

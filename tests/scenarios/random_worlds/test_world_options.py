@@ -49,11 +49,12 @@ VARIED = {
 }
 
 
-def test_several_values_that_are_never_drawn_by_default_are_equal() -> None:
-    found = narrowed({"age": ["child", "elder"], "posture": ["sitting", "bending"], "bodies": "skins"}).shares
-    assert found["age"] == {"child": 0.5, "elder": 0.5}
-    assert found["posture"] == {"sitting": 0.5, "bending": 0.5}
-    assert found["bodies"] == {"skins": 1.0}
+def test_several_values_keep_their_proportions_unless_one_is_never_drawn_by_default() -> None:
+    given = {"age": ["adult", "elder"], "posture": "sitting", "bodies": ["skins", "capsules"]}
+    found = narrowed(given).shares
+    assert found["age"] == pytest.approx({"adult": 5 / 6, "elder": 1 / 6})
+    assert found["posture"] == {"sitting": 1.0}
+    assert found["bodies"] == {"skins": 0.5, "capsules": 0.5}
 
 
 def test_people_of_all_kinds_are_drawn_where_the_distribution_has_them() -> None:
@@ -75,7 +76,10 @@ def test_people_of_all_kinds_are_drawn_where_the_distribution_has_them() -> None
 
 
 def test_kinds_of_people_do_not_change_anything_else_of_a_world() -> None:
-    plain, varied = (random_world(4, distribution=narrowed(given)) for given in ({}, {"age": "elder"}))
+    alike = {"age": "adult", "gait": "usual", "equipment": "nothing", "pauses": 0.0}
+    plain, varied = (
+        random_world(4, distribution=narrowed(alike | given)) for given in ({}, {"age": "elder"})
+    )
     assert [person | {"age": "elder"} for person in plain["people"]] == varied["people"]
     assert {key: value for key, value in plain.items() if key != "people"} == {
         key: value for key, value in varied.items() if key != "people"
