@@ -20,6 +20,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_named_tracker
+from peopleboy.scenarios.random_worlds.distribution import narrowed
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.run_folder.folder import gt_lines
@@ -52,6 +53,8 @@ STRUCTURED = (
 )
 """Scenes of the library that imitate real ones."""
 WORLDS = 24
+STREETS = range(200, 248)
+"""Seeds of streets with at least two people, as the clips show them."""
 SEED = 100
 SCENE_S, WORLD_S = 6.0, 3.0
 
@@ -76,8 +79,8 @@ def _in_full(data: Data) -> Data:
     return data | {"detail": "full"}
 
 
-def _with_skins(data: Data) -> Data:
-    return data | {"bodies": "skins"}
+def _with_capsules(data: Data) -> Data:
+    return data | {"bodies": "capsules"}
 
 
 def _as_it_is(data: Data) -> Data:
@@ -115,10 +118,11 @@ def steps() -> Iterator[tuple[str, list[tuple[Scenario, int]]]]:
     """Yield each step with its scenarios and seeds."""
     for name, changes in STEPS.items():
         yield name, [(_changed(scene, changes), SEED) for scene in PLAIN]
-    for name, change in {"": _as_it_is, " and skins": _with_skins}.items():
+    for name, change in {"": _as_it_is, ", people of capsules": _with_capsules}.items():
         yield f"scenes with structure{name}", [(_changed(scene, (change,)), SEED) for scene in STRUCTURED]
-        worlds = ((_world(seed, change), seed) for seed in range(SEED, SEED + WORLDS))
-        yield f"random worlds{name}", list(worlds)
+        yield f"random worlds{name}", [(_world(seed, change), seed) for seed in range(SEED, SEED + WORLDS)]
+    streets = narrowed({"place": "street", "people": [2, 8]})
+    yield "random streets", [(random_scenario(seed, WORLD_S, streets), seed) for seed in STREETS]
 
 
 def _world(seed: int, change: Change) -> Scenario:
