@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.behaviours.scripted import Stand
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.reproductions.contour.explanation import ContourExplanation
@@ -20,10 +21,11 @@ CROSSING = ("crossing_2", 3)
 
 
 def ticks(
-    scenario: str, seed: int, frames: int, tracker: str = CONTOUR_TRACKER
+    scenario: str | Scenario, seed: int, frames: int, tracker: str = CONTOUR_TRACKER
 ) -> Iterator[tuple[SimulatedWorld, Tick]]:
     """Yield the first ticks of a scenario with a standing robot, as in `peopleboy run`."""
-    with SimulatedWorld(load_scenario(scenario).world(seed)) as world:
+    played = load_scenario(scenario) if isinstance(scenario, str) else scenario
+    with SimulatedWorld(played.world(seed)) as world:
         eyes = make_tracker(tracker, seed)
         for tick in closed_loop(world, eyes, Stand(), frames):
             yield world, tick

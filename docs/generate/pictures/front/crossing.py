@@ -6,31 +6,20 @@ import io
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from matplotlib.figure import Figure
 from PIL import Image
 
-from docs.generate.pictures.front.overview import draw_plan, draw_truth
+from docs.generate.pictures.front.overview import crossing, draw_plan, draw_truth
+from docs.generate.pictures.moments import ticks
 from docs.generate.pictures.paper import panels, show
-from peopleboy.behaviours.scripted import Stand
 from peopleboy.scenarios.drawing.overlay import draw_tracks, enlarge, show_thermal
-from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.sim.world import SimulatedWorld
-from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.sim.world_config import CONTROL_HZ
+from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 PATH = Path(__file__).parents[3] / "pictures" / "crossing.webp"
-SCENARIO = """
-name: crossing
-description: Four people cross in front of a standing robot, in full detail.
-like: crossing_4
-detail: full
-robot:
-  at_m: [0.6, 0.0]
-  cameras: {thermal: {kind: thermal, preset: uncooled}}
-"""
 SEED, FROM_S, UNTIL_S = 0, 2.4, 10.4
 EVERY = 2  # ticks per frame: 7.5 frames per second, real time
 SCALE = 2
@@ -39,14 +28,12 @@ QUALITY = 65  # of WebP, 0 to 100; lower values blur lines and labels
 TITLES = ("thermal image with tracks", "ground truth: visible fraction", "plan: who occludes whom")
 
 
-def frames(path: Path) -> Iterator[Image.Image]:
-    """Run the scenario of a file, and draw every second tick."""
-    scenario = load_scenario(path)
-    with SimulatedWorld(scenario.world(SEED)) as world:
-        first, last = (round(time_s * world.config.control_hz) for time_s in (FROM_S, UNTIL_S))
-        tracker = make_tracker(DEFAULT_TRACKER, SEED)
-        for tick in islice(closed_loop(world, tracker, Stand(), last), first, None, EVERY):
-            yield _raster(_draw(scenario, tick))
+def frames() -> Iterator[Image.Image]:
+    """Run the crossing, and draw every second tick."""
+    scenario = crossing()
+    first, last = (round(time_s * CONTROL_HZ) for time_s in (FROM_S, UNTIL_S))
+    for _, tick in islice(ticks(scenario, SEED, last, DEFAULT_TRACKER), first, None, EVERY):
+        yield _raster(_draw(scenario, tick))
 
 
 def _draw(scenario: Scenario, tick: Tick) -> Figure:
@@ -66,10 +53,7 @@ def _raster(figure: Figure) -> Image.Image:
 
 def main() -> None:
     """Write the animation."""
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "crossing.yaml"
-        path.write_text(SCENARIO, encoding="utf-8")
-        first, *others = frames(path)
+    first, *others = frames()
     first.save(
         PATH,
         save_all=True,

@@ -17,7 +17,8 @@ from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.drawing.overlay import draw_tracks, enlarge, show_thermal
 from peopleboy.scenarios.drawing.palette import ROBOT, Rgb, person_colour
 from peopleboy.scenarios.drawing.plan_sheet import Labels, draw_floor, draw_things, draw_walls
-from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.library import LIBRARY
+from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.geometry.pinhole import Pinhole
@@ -26,7 +27,7 @@ from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 PATH = Path(__file__).parents[3] / "overview.png"
-SCENARIO, SEED, FRAME = "crossing_4", 0, 41
+SEED, FRAME = 0, 41
 SCALE = 3
 LEAST_SHARE = 0.02  # smallest occluded fraction that gets an arrow
 LABEL_M = 0.4  # beyond the far wall, so that labels near it are not clipped
@@ -39,9 +40,20 @@ TITLES = (
 )
 
 
+def crossing() -> Scenario:
+    """Return a crossing of four people in front of a standing robot, in full detail."""
+    data = {
+        "name": "crossing",
+        "like": "crossing_4",
+        "detail": "full",
+        "robot": {"at_m": [0.6, 0.0], "cameras": {"thermal": {"kind": "thermal", "preset": "uncooled"}}},
+    }
+    return parse_scenario(data, source="crossing", folder=LIBRARY)
+
+
 def overview() -> Figure:
     """Draw one instant of a crossing of four people."""
-    *_, (_, tick) = ticks(SCENARIO, SEED, FRAME, DEFAULT_TRACKER)
+    *_, (_, tick) = ticks(crossing(), SEED, FRAME, DEFAULT_TRACKER)
     figure, (thermal, colour, truth, plan) = panels(TITLES, 8.7, columns=2)
     show(
         thermal,
@@ -54,7 +66,7 @@ def overview() -> Figure:
     )
     show(colour, tick.observation.images["colour"])
     draw_truth(truth, tick.truth)
-    draw_plan(plan, load_scenario(SCENARIO), tick)
+    draw_plan(plan, crossing(), tick)
     return figure
 
 
