@@ -10,11 +10,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.vectors import compose
 from peopleboy.sim.rendering.render_canvas import Lens
 from peopleboy.sim.rendering.renderer import RenderPass
-from peopleboy.sim.rendering.skin_canvas import see_skins
 from peopleboy.sim.rendering.skin_rays import (
     NO_HITS,
     RAYS,
@@ -56,14 +55,12 @@ def smooth(image: NDArray[np.float32], contrast: float, seen: RenderPass, camera
     if view.surface is None:
         return
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    camera_from_world = invert_pose(seen.world_from_camera)
-    poses, hits = camera_from_world @ scene.world_from_part, NO_HITS
-    if scene.skins is not None:
-        skins = scene.skins.table
-        edges, count = edges_of_skins(
-            image, np.float32(contrast), view.part, view.surface, skins.first_surface
-        )
-        hits = hit_skins(skins, see_skins(scene.skins, camera_from_world).points, lens, edges, count)
+    poses, skins = scene.seen_from(seen.world_from_camera)
+    hits = NO_HITS
+    if skins is not None:
+        first = skins.posed.table.first_surface
+        edges, count = edges_of_skins(image, np.float32(contrast), view.part, view.surface, first)
+        hits = hit_skins(skins, lens, edges, count)
     _smooth(
         image, np.float32(contrast), view.part, view.surface, view.depth, scene.table, poses, lens, hits
     )  # fmt: skip

@@ -3,9 +3,8 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numba import njit
@@ -91,9 +90,8 @@ def render(scene: "Scene", camera: Pinhole, world_from_camera: Matrix) -> View:
     if persons.max(initial=0) >= _MOST_PEOPLE:
         raise BadInput(f"person number {persons.max()}: a view supports at most {_MOST_PEOPLE} people")
     if scene.renderer == "raycast":
-        return cast(
-            scene.table, camera, world_from_camera, scene.world_from_part, persons, hidden, scene.skins
-        )
+        skins = scene.seen_from(world_from_camera)[1] if scene.skins is not None else None
+        return cast(scene.table, camera, world_from_camera, scene.world_from_part, persons, hidden, skins)
     if scene.renderer == "bullet":
         if not isinstance(scene.physics, Rasteriser):
             raise BadInput("renderer 'bullet' needs physics bullet; choose raycast")
@@ -110,29 +108,28 @@ def cast(
     world_from_part: Matrix,
     person_of_part: NDArray[np.int64],
     hidden: NDArray[np.bool_],
-    skins: PosedSkins | None = None,
+    skins: SeenSkins | None = None,
 ) -> View:
-    """Render with the ray caster; arguments as the attributes of `Scene`."""
+    """Render with the ray caster; arguments as the attributes of `Scene`; skins are in the camera's frame."""
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
     canvas, bits = make_canvas(lens, _shadings(table, skins)), person_bits(person_of_part)
-    camera_from_world = invert_pose(world_from_camera)
-    draw(table, from_each(camera_from_world, world_from_part), hidden, bits, lens, canvas)
+    camera_from_part = from_each(invert_pose(world_from_camera), world_from_part)
+    draw(table, camera_from_part, hidden, bits, lens, canvas)
     if skins is not None:
-        seen = see_skins(skins, camera_from_world)
-        draw_skins(seen, hidden, bits, lens, canvas)
+        area = draw_skins(skins, hidden, bits, lens, canvas)
     shape = (lens.height, lens.width)
     part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)
     normal = np.empty((*shape, 3), np.float32)
     rotation = np.ascontiguousarray(world_from_camera[:3, :3])
     shade(table.surface_part, lens, canvas, rotation, part, depth, normal)
     if skins is not None:
-        shade_skins(seen, lens, canvas, rotation, normal)
+        shade_skins(skins, area, lens, canvas, rotation, normal)
     return View(part, depth, normal, canvas.cover, canvas.surface)
 
 
-def _shadings(table: ShapeTable, skins: PosedSkins | None) -> int:
+def _shadings(table: ShapeTable, skins: SeenSkins | None) -> int:
     """Return the number of rows of a canvas's shading."""
-    return len(table.surface_part) if skins is None else skins.table.first_surface + 1
+    return len(table.surface_part) if skins is None else skins.posed.table.first_surface + 1
 
 
 def rasterise(
@@ -214,7 +211,7 @@ def silhouette_area(
         return 0
     u, v = camera.centre_px
     lens = Lens(camera.focal_px, u - left, v - top, right - left + 1, bottom - top + 1)
-    canvas = make_canvas(lens, _shadings(table, None if skins is None else skins.posed))
+    canvas = make_canvas(lens, _shadings(table, skins))
     bits = np.ones(len(parts), np.uint64)
     draw(table, camera_from_part, ~parts, bits, lens, canvas)
     if skins is not None:
@@ -270,6 +267,19 @@ class Scene:
     person_of_part: NDArray[np.int64]
     hidden: Mask
     skins: PosedSkins | None = None
+    _seen: dict[bytes, tuple[Matrix, SeenSkins | None]] = field(default_factory=dict, init=False, repr=False)
+
+    def seen_from(self, world_from_camera: Matrix) -> tuple[Matrix, SeenSkins | None]:
+        """Return the poses (P, 4, 4) of all parts in a camera's frame, and the skins there.
+
+        They are computed once for each camera, as its image, edges and boxes need them.
+        """
+        key = world_from_camera.tobytes()
+        if key not in self._seen:
+            camera_from_world = invert_pose(world_from_camera)
+            skins = None if self.skins is None else see_skins(self.skins, camera_from_world)
+            self._seen[key] = camera_from_world @ self.world_from_part, skins
+        return self._seen[key]
 
     def without(self, parts: Mask) -> "Scene":
         """Return the scene without some parts (P,), such as those through which light passes."""
@@ -320,36 +330,21 @@ class Renderer(ABC):
 class PinholeRenderer(Renderer):
     """Renderer for pinhole cameras; outlines continue beyond the image."""
 
-    def __init__(self) -> None:
-        # Poses in a camera's frame for each scene in use, since all boxes of a scene need them.
-        self._poses: WeakKeyDictionary[Scene, dict[bytes, tuple[Matrix, SeenSkins | None]]]
-        self._poses = WeakKeyDictionary()
-
     def view(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix) -> View:
         """Render with the scene's renderer."""
         return render(scene, camera, world_from_camera)
 
     def bounds(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> Matrix:
         """See `silhouette_bounds`."""
-        poses, skins = self._before(scene, world_from_camera)
+        poses, skins = scene.seen_from(world_from_camera)
         return silhouette_bounds(camera, scene.table, poses, parts, skins)
 
     def area(
         self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask, bounds: Sequence[float]
     ) -> int:
         """See `silhouette_area`."""
-        poses, skins = self._before(scene, world_from_camera)
+        poses, skins = scene.seen_from(world_from_camera)
         return silhouette_area(camera, scene.table, poses, parts, bounds, skins)
-
-    def _before(self, scene: Scene, world_from_camera: Matrix) -> tuple[Matrix, SeenSkins | None]:
-        """Return the poses (P, 4, 4) of a scene's parts in a camera's frame, and its skins there."""
-        known, key = self._poses.setdefault(scene, {}), world_from_camera.tobytes()
-        if key not in known:
-            camera_from_world, skins = invert_pose(world_from_camera), None
-            if scene.skins is not None:
-                skins = see_skins(scene.skins, camera_from_world)
-            known[key] = camera_from_world @ scene.world_from_part, skins
-        return known[key]
 
 
 PINHOLE_RENDERER = PinholeRenderer()

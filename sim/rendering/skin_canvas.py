@@ -32,28 +32,42 @@ class SeenSkins(NamedTuple):
     Attributes:
         posed: the K skins with V vertices.
         points: (V, 3) [m] vertices in the optical frame.
-        pixels: (K, 4) first column and row, and those after the last, of the pixels that each skin may
-            cover; 0 before `draw_skins` writes them.
+        image: (V, 3) position of each vertex at a distance of 1 m, to the right and down, and its nearness
+            1 / z [1/m].
     """
 
     posed: PosedSkins
     points: Array
-    pixels: NDArray[np.int64]
-
-
-@njit(cache=True, nogil=True)
-def see_skins(posed: PosedSkins, camera_from_world: Array) -> SeenSkins:
-    """Return skins in the frame of a camera."""
-    points = np.empty_like(posed.vertices)
-    for v in range(len(points)):
-        points[v, 0], points[v, 1], points[v, 2] = map_point(
-            camera_from_world, posed.vertices[v, 0], posed.vertices[v, 1], posed.vertices[v, 2]
-        )
-    return SeenSkins(posed, points, np.zeros((len(posed.table.part_of_bone), 4), np.int64))
+    image: Array
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def draw_skins(seen: SeenSkins, skip: Mask, bits: NDArray[np.uint64], lens: Lens, canvas: Canvas) -> None:
+def see_skins(posed: PosedSkins, camera_from_world: Array) -> SeenSkins:
+    """Return skins in the frame of a camera."""
+    points, image = np.empty_like(posed.vertices), np.empty_like(posed.vertices)
+    for v in range(len(points)):
+        x, y, z = map_point(
+            camera_from_world, posed.vertices[v, 0], posed.vertices[v, 1], posed.vertices[v, 2]
+        )
+        points[v, 0], points[v, 1], points[v, 2] = x, y, z
+        nearness = 1.0 / z
+        image[v, 0], image[v, 1], image[v, 2] = x * nearness, y * nearness, nearness
+    return SeenSkins(posed, points, image)
+
+
+@njit(cache=True, nogil=True)
+def to_pixels(image: Array, lens: Lens, pixels: Array) -> None:
+    """Write column and row [px] and nearness [1/m] of vertices (V, 3) to the first V rows of an array."""
+    for v in range(len(image)):
+        pixels[v, 0] = lens.centre_u + lens.focal * image[v, 0]
+        pixels[v, 1] = lens.centre_v + lens.focal * image[v, 1]
+        pixels[v, 2] = image[v, 2]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def draw_skins(
+    seen: SeenSkins, skip: Mask, bits: NDArray[np.uint64], lens: Lens, canvas: Canvas
+) -> NDArray[np.int64]:
     """Draw all triangles except those of skipped parts.
 
     Args:
@@ -62,17 +76,22 @@ def draw_skins(seen: SeenSkins, skip: Mask, bits: NDArray[np.uint64], lens: Lens
         bits: (P,) bits that a part's silhouette sets in the cover.
         lens: ray directions of the pixels.
         canvas: canvas to draw on.
+
+    Returns:
+        (K, 4) first column and row, and those after the last, of the pixels that each skin may cover.
     """
-    skins, points, pixels, most = seen.posed.table, seen.points, seen.pixels, 0
+    skins, points, most = seen.posed.table, seen.points, 0
+    area = np.empty((len(skins.part_of_bone), 4), np.int64)
     for k in range(len(skins.part_of_bone)):
         most = max(most, skins.first_vertex[k + 1] - skins.first_vertex[k])
     image = np.empty((most, 3))
     set_shading(canvas, skins.first_surface, _NOTHING, _NOTHING, 0.0)  # `shade_skins` follows
     for k in range(len(skins.part_of_bone)):
         first, end = skins.first_vertex[k], skins.first_vertex[k + 1]
-        near = _project(points[first:end], lens, image)
-        _cover(image[: end - first], near, lens, pixels[k])
-        if pixels[k, 0] >= pixels[k, 2] or pixels[k, 1] >= pixels[k, 3]:
+        near = _side(points[first:end])
+        to_pixels(seen.image[first:end], lens, image)
+        _cover(image[: end - first], near, lens, area[k])
+        if area[k, 0] >= area[k, 2] or area[k, 1] >= area[k, 3]:
             continue
         for t in range(skins.first_triangle[k], skins.first_triangle[k + 1]):
             part = skins.part[t]
@@ -85,29 +104,25 @@ def draw_skins(seen: SeenSkins, skip: Mask, bits: NDArray[np.uint64], lens: Lens
                 _fill(
                     image, a - first, b - first, c - first, skins.first_surface + t, bits[part], lens, canvas
                 )
+    return area
 
 
 _AHEAD, _ACROSS, _BEHIND = 0, 1, 2
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _project(points: Array, lens: Lens, image: Array) -> int:
-    """Write column, row [px] and nearness [1/m] of points (V, 3); return on which side of the near plane."""
+@njit(cache=True, nogil=True)
+def _side(points: Array) -> int:
+    """Return on which side of the near plane points (V, 3) are."""
     least, most = math.inf, -math.inf
     for v in range(len(points)):
-        x, y, z = points[v, 0], points[v, 1], points[v, 2]
-        nearness = 1.0 / z
-        image[v, 0] = lens.centre_u + lens.focal * x * nearness
-        image[v, 1] = lens.centre_v + lens.focal * y * nearness
-        image[v, 2] = nearness
-        least, most = min(least, z), max(most, z)
+        least, most = min(least, points[v, 2]), max(most, points[v, 2])
     if least >= NEAR_M:
         return _AHEAD
     return _ACROSS if most >= NEAR_M else _BEHIND
 
 
 @njit(cache=True, nogil=True)
-def _cover(image: Array, near: int, lens: Lens, pixels: NDArray[np.int64]) -> None:
+def _cover(image: Array, near: int, lens: Lens, area: NDArray[np.int64]) -> None:
     """Write the rectangle (4,) of pixels around all points; the whole image across the near plane."""
     left, top, right, bottom = 0.0, 0.0, lens.width - 1.0, lens.height - 1.0
     if near != _ACROSS:
@@ -118,8 +133,8 @@ def _cover(image: Array, near: int, lens: Lens, pixels: NDArray[np.int64]) -> No
         left, top = max(left, least - _SLACK), max(top, first - _SLACK)
         right, bottom = min(right, most + _SLACK), min(bottom, last + _SLACK)
     is_some = left <= right and top <= bottom
-    pixels[0], pixels[1] = (math.ceil(left), math.ceil(top)) if is_some else (0, 0)
-    pixels[2], pixels[3] = (math.floor(right) + 1, math.floor(bottom) + 1) if is_some else (0, 0)
+    area[0], area[1] = (math.ceil(left), math.ceil(top)) if is_some else (0, 0)
+    area[2], area[3] = (math.floor(right) + 1, math.floor(bottom) + 1) if is_some else (0, 0)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -185,15 +200,23 @@ def _draw_across(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def shade_skins(
-    seen: SeenSkins, lens: Lens, canvas: Canvas, rotation: Array, normal: NDArray[np.float32]
+    seen: SeenSkins,
+    area: NDArray[np.int64],
+    lens: Lens,
+    canvas: Canvas,
+    rotation: Array,
+    normal: NDArray[np.float32],
 ) -> None:
-    """Write the normals of drawn skins, interpolated between their vertices; arguments as in `shade`."""
-    skins, pixels = seen.posed.table, seen.pixels
-    for k in range(len(pixels)):
+    """Write the normals of drawn skins, interpolated between their vertices.
+
+    Arguments are as in `shade`, with the rectangles (K, 4) that `draw_skins` returns.
+    """
+    skins = seen.posed.table
+    for k in range(len(area)):
         first = skins.first_surface + skins.first_triangle[k]
         end = skins.first_surface + skins.first_triangle[k + 1]
-        for v in range(pixels[k, 1], pixels[k, 3]):
-            for u in range(pixels[k, 0], pixels[k, 2]):
+        for v in range(area[k, 1], area[k, 3]):
+            for u in range(area[k, 0], area[k, 2]):
                 surface = canvas.surface[v, u]
                 if first <= surface < end and canvas.nearness[v, u] > 0.0:
                     x, y = (u - lens.centre_u) / lens.focal, (v - lens.centre_v) / lens.focal
@@ -260,17 +283,17 @@ def skin_bounds(seen: SeenSkins, parts: Mask, found: Array) -> None:
         for v in range(first, end):
             is_ahead &= points[v, 2] >= NEAR_M
         if is_ahead:
-            _vertex_bounds(skins, points, first, end, parts, chosen, found)
+            _vertex_bounds(skins, seen.image, first, end, parts, chosen, found)
         else:
             _edge_bounds(skins, points, k, parts, chosen, found)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _vertex_bounds(
-    skins: SkinTable, points: Array, first: int, end: int, parts: Mask, chosen: Mask, found: Array
+    skins: SkinTable, image: Array, first: int, end: int, parts: Mask, chosen: Mask, found: Array
 ) -> None:
     for v in range(first, end):
-        x, y = points[v, 0] / points[v, 2], points[v, 1] / points[v, 2]
+        x, y = image[v, 0], image[v, 1]
         p, q = skins.vertex_parts[v, 0], skins.vertex_parts[v, 1]
         for n in range(len(parts)):
             if chosen[n] and (parts[n, p] or parts[n, q]):

@@ -8,8 +8,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.rendering.render_canvas import Lens
+from peopleboy.sim.rendering.skin_canvas import SeenSkins, to_pixels
 from peopleboy.sim.shapes.bounds import NEAR_M
-from peopleboy.sim.shapes.skins import SkinTable
 
 Array = NDArray[np.float64]
 Pixels = NDArray[np.int32]
@@ -93,22 +93,17 @@ def edges_of_skins(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def hit_skins(skins: SkinTable, points: Array, lens: Lens, number: Pixels, count: int) -> SkinHits:
+def hit_skins(seen: SeenSkins, lens: Lens, number: Pixels, count: int) -> SkinHits:
     """Cast the rays of some pixels; only the fronts of triangles are hit.
 
     Args:
-        skins: the skins.
-        points: (V, 3) [m] their vertices in the optical frame.
+        seen: the skins.
         lens: the camera.
         number: (H, W) numbers of the pixels, as returned by `edges_of_skins`.
         count: how many pixels there are.
     """
-    image = np.empty_like(points)
-    for v in range(len(points)):
-        nearness = 1.0 / points[v, 2]
-        image[v, 0] = lens.centre_u + lens.focal * points[v, 0] * nearness
-        image[v, 1] = lens.centre_v + lens.focal * points[v, 1] * nearness
-        image[v, 2] = nearness
+    skins, image = seen.posed.table, np.empty_like(seen.image)
+    to_pixels(seen.image, lens, image)
     hits = SkinHits(number, np.zeros((count, 4)), np.full((count, 4), np.int32(-1)))
     for t in range(len(skins.triangles)):
         a, b, c = skins.triangles[t, 0], skins.triangles[t, 1], skins.triangles[t, 2]
