@@ -162,7 +162,9 @@ class NetworkDetector:
         mount = None if calibration is None else mount_of(calibration, grey.shape[0])
         self._past.keep(grey, frame.time_s, frame.odometry)
         found = self._network.detect(grey, self._past.change(mount), mount, self._weakest, self._workspace)
-        return DetectedBoxes(Detections.from_trees(found.box, found.score), posture=found.posture)
+        return DetectedBoxes(
+            Detections(found.box, found.score, found.score, found.edges), posture=found.posture
+        )
 
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
         """Do nothing: the network uses no tracks."""

@@ -288,20 +288,19 @@ class WalkingThenLying:
         posture[0, -1 if self.images >= 20 else 0] = 4.0
         box = np.array([WALK[self.images]])
         self.images += 1
-        return NetworkDetections(np.array([5.0]), box, box[:, :2], posture)
+        return NetworkDetections(np.array([5.0]), box, np.array([[-0.2, 0.3]]), posture)
 
 
-def test_a_network_names_the_postures_of_tracks() -> None:
+def test_a_network_names_the_postures_of_tracks_and_measures_their_edges() -> None:
     network: Any = WalkingThenLying()
     tracker = PeopleTracker((ThermalSensor(detector=NetworkDetector(network)),))
     grey = np.zeros((240, 320), np.uint8)
-    named = [
-        [track.posture for track in tracker.update(Frame(time_s=k / 15.0, images={THERMAL: grey}))]
-        for k in range(45)
-    ]
+    tracks = [tracker.update(Frame(time_s=k / 15.0, images={THERMAL: grey})) for k in range(45)]
+    named = [[track.posture for track in one] for one in tracks]
     assert named[19] == [TrackPosture.UPRIGHT]
     assert named[20] == [TrackPosture.UPRIGHT]  # one image is not enough
     assert named[44] == [TrackPosture.LYING]
+    assert tracks[44][0].edges == pytest.approx((-0.2, 0.3))
 
 
 def test_a_trained_network_is_read_from_its_file(tmp_path: Path) -> None:

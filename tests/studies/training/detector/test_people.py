@@ -47,10 +47,10 @@ def test_outputs_that_reach_the_target_give_the_true_boxes(shots: list[ThermalIm
         found = decode({stride: outputs_of(one) for stride, one in targets.items()}, 0.0, (1.0, 0.0))
         if not len(found.box):
             continue
-        left, top, width, height = found.box.T
+        _, top, width, height = found.box.T
         np.testing.assert_allclose(width / height, 0.3, rtol=1e-4)  # as drawn, at every scale
-        np.testing.assert_allclose(found.whole[:, 1] - found.whole[:, 0], 1.4 * width, rtol=1e-4)
-        np.testing.assert_allclose(found.whole.mean(axis=1), left + width / 2.0, atol=1e-3)
+        np.testing.assert_allclose(found.edges[:, 1] - found.edges[:, 0], 1.4 * width / height, rtol=1e-4)
+        np.testing.assert_allclose(found.edges.sum(axis=1), 0.0, atol=1e-3)
         assert ((top < CANVAS[0]) & (top + height > 0)).all()
 
 

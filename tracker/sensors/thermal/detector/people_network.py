@@ -111,13 +111,13 @@ class NetworkDetections(NamedTuple):
     Attributes:
         score: (N,) log-odds.
         box: (N, 4) [px] from head to feet, as wide as the torso.
-        whole: (N, 2) [px] left and right edge of the whole silhouette.
+        edges: (N, 2) left and right edge of the whole person, as in `Detections`.
         posture: (N, 5) log-odds of the postures, up to a constant.
     """
 
     score: Floats
     box: Floats
-    whole: Floats
+    edges: Floats
     posture: Floats
 
 
@@ -241,10 +241,11 @@ def decode(maps: Mapping[int, Planes], least: float, line: tuple[float, float]) 
         u = (column + 0.5) * stride - 0.5 + SHIFT * unit * box[:, 0]
         v = (row + 0.5) * stride - 0.5 + SHIFT * unit * box[:, 1]
         height = unit * np.exp(np.clip(box[:, 2], -2.0, 2.5))
-        width, left, right = (height * np.exp(np.clip(box[:, k], -4.0, 1.5)) for k in (3, 4, 5))
+        width, left, right = (np.exp(np.clip(box[:, k], -4.0, 1.5)) for k in (3, 4, 5))
+        width *= height
         boxes = np.stack([u - width / 2.0, v - height / 2.0, width, height], axis=1)
         score = line[0] * here[:, 0] + line[1]
-        parts.append((score, boxes, np.stack([u - left, u + right], axis=1), here[:, 1 + BOX :]))
+        parts.append((score, boxes, np.stack([-left, right], axis=1), here[:, 1 + BOX :]))
     return NetworkDetections(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 

@@ -50,7 +50,7 @@ def test_a_map_gives_the_person_at_its_maximum() -> None:
     u, v = 3.5 * 8 - 0.5 + SHIFT * unit * 0.5, 2.5 * 8 - 0.5 - SHIFT * unit * 0.25
     assert found.score.tolist() == [2.0]
     np.testing.assert_allclose(found.box, [[u - unit / 8, v - unit / 2, unit / 4, unit]], rtol=1e-6)
-    np.testing.assert_allclose(found.whole, [[u - 0.2 * unit, u + 0.3 * unit]], rtol=1e-6)
+    np.testing.assert_allclose(found.edges, [[-0.2, 0.3]], rtol=1e-6)
     assert found.posture.tolist() == [[0.0, 1.0, 2.0, 3.0, 4.0]]
 
 
