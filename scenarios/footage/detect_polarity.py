@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 from peopleboy.tracker.footage.grey import Polarity
 from peopleboy.tracker.sensors.thermal.detector.detector import PeopleDetector
 
-LOOK_AHEAD: Final = 45
-"""Images at the beginning of a clip, 3 s at 15 Hz, from which a few are compared."""
+LOOK_AHEAD: Final = 150
+"""Images at the beginning of a clip, 10 s at 15 Hz, from which a few are compared."""
 
 _COMPARED: Final = 8
 _CLEARLY: Final = 1.15
 """Ratio of the sums of scores from which one is clearly higher."""
 _MOST: Final = 0.75
 """Share of the images with people that must agree."""
-_LEAST: Final = 2.0
+_LEAST: Final = 1.5
 """Sum of log-odds per image from which there is evidence; faint people may be colder than a hot room."""
 
 
