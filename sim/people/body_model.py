@@ -16,9 +16,13 @@ from peopleboy.sim.people.body.body_shapes import ARM_PARTS as _LIMBS
 from peopleboy.sim.people.body.body_shapes import (
     BAG_PART,
     BODY_PARTS,
+    PHONE_PART,
+    SIDES,
+    PartGeometry,
     bag,
     bone_index,
     build_body,
+    phone,
     support_points,
 )
 from peopleboy.sim.people.body.clothes import dress
@@ -39,8 +43,9 @@ from peopleboy.sim.shapes.skins import Skin
 
 Array = NDArray[np.float64]
 
-ARM_PARTS = (*_LIMBS, BAG_PART)
-PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, BAG_PART), start=1)}
+_CARRIED = (BAG_PART, PHONE_PART)
+ARM_PARTS = (*_LIMBS, *_CARRIED)
+PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, *_CARRIED), start=1)}
 
 _ARM_POSTURES: Final[Mapping[Arms, Posture]] = {
     "crossed": Posture.ARMS_CROSSED,
@@ -54,6 +59,7 @@ _ARM_HOLDS: Final[Mapping[Arms, tuple[Hold, Hold]]] = {
 _BOW_TO_PHONE_RAD = math.radians(24.0)
 _BAG_LOOK = Material(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
 _BAG_HAND = "right"
+_PHONE_LOOK = Material(temperature_c=31.0, variation_k=0.0, rgb=(0.02, 0.02, 0.03))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -119,11 +125,12 @@ def make_body_model(
         air_c: [degC] temperature of the air, and so of equipment.
     """
     size = measure(config.height_m, config.sex, config.build)
+    manner = _manner_of(config, USUAL if finisher is None else finisher.manner)
     plan = _plan(config, size, NOTHING_MORE if finisher is None else finisher.outfit, body)
-    materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
+    plan = replace(plan, geometry=plan.geometry | _phone_of(manner, size))
+    materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK, PHONE_PART: _PHONE_LOOK}
     if finisher is not None:
         materials = finisher.finish(materials, plan.geometry, plan.head_m)
-    manner = _manner_of(config, USUAL if finisher is None else finisher.manner)
     gait, supports = _gait_of(config, plan, manner)
     things: tuple[EquipmentPart, ...] = ()
     if config.equipment != "nothing":
@@ -172,6 +179,14 @@ def _plan(config: PersonConfig, size: BodySize, outfit: Outfit, body: RestBody |
         arm_m=arm_lengths(size.stature_m),
         head_m=size.stature_m,
     )
+
+
+def _phone_of(manner: Manner, size: BodySize) -> dict[str, PartGeometry]:
+    """Return the telephone of a person who holds one, in one hand."""
+    for side, hold in zip(SIDES, manner.holds, strict=True):
+        if hold in ("telephone", "phone_in_hand"):
+            return {PHONE_PART: phone(side, size.stature_m)}
+    return {}
 
 
 def _manner_of(config: PersonConfig, own: Manner) -> Manner:

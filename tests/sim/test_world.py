@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -239,6 +240,26 @@ def test_a_control_step_must_be_a_whole_number_of_physics_steps() -> None:
         WorldConfig(place=hall(), seed=-1)
     with refused("'magic'", "raycast"), SimulatedWorld(config(renderer="magic")) as world:
         world.truth()
+
+
+@pytest.mark.parametrize(
+    ("settings", "shape"),
+    [
+        ({}, "capsules"),
+        ({"detail": "full"}, "skins"),
+        ({"detail": "full", "renderer": "bullet"}, "capsules"),
+        ({"detail": "full", "bodies": "capsules"}, "capsules"),
+        ({"bodies": "skins"}, "skins"),
+    ],
+)
+def test_people_have_skins_in_full_detail_unless_capsules_are_set(
+    settings: dict[str, Any], shape: str
+) -> None:
+    with SimulatedWorld(config(*WALKERS, robot=robot(thermal=QUIET), **settings)) as world:
+        assert world.config.body_shape == shape
+        assert (world._scene.skins is not None) == (shape == "skins")
+    with refused("bullet", "skins", "capsules"):
+        config(*WALKERS, renderer="bullet", bodies="skins")
 
 
 def test_a_command_that_is_no_number_is_refused_and_moves_nothing() -> None:

@@ -11,7 +11,7 @@ from peopleboy.sim.people.appearance.clothing import OPEN, Worn, add_trimmings, 
 from peopleboy.sim.people.appearance.faces import paint_face, paint_hair, paint_skin
 from peopleboy.sim.people.appearance.textures import Mesh, crumple, make_mesh
 from peopleboy.sim.people.appearance.traits import draw_traits
-from peopleboy.sim.people.body.body_shapes import BAG_PART, PartGeometry
+from peopleboy.sim.people.body.body_shapes import BAG_PART, PHONE_PART, PartGeometry
 from peopleboy.sim.people.body.clothes import ROOM_C, Garment
 from peopleboy.sim.people.body.outfit import Outfit, draw_outfit
 from peopleboy.sim.people.motion.manner import Manner, draw_manner
@@ -142,6 +142,8 @@ class Finisher:
         }
 
     def _finish_part(self, part: str, material: Material, geometry: PartGeometry, second: Rgb) -> Material:
+        if part == PHONE_PART:
+            return material
         if part == BAG_PART:
             warmer_k = material.temperature_c - ROOM_C
             return replace(material, temperature_c=self._air_c + warmer_k, rgb=self._bag_rgb)

@@ -27,6 +27,7 @@ LEG_PARTS = tuple(f"{side}_{part}" for side in SIDES for part in ("thigh", "shin
 TORSO_PARTS = ("chest", "abdomen", "pelvis")
 HEAD_PARTS = ("head", "hair", "neck")
 BAG_PART = "bag"
+PHONE_PART = "phone"
 FLOOR = "floor"
 """Name of the frame on the floor under a person, beside those of the bones."""
 FRAME_INDEX: Final = {**BONE_INDEX, FLOOR: len(BONE_INDEX)}
@@ -312,6 +313,13 @@ def bag(side: str, stature_m: float) -> PartGeometry:
     """Make a briefcase that hangs from a hand."""
     drop = (table.HAND_LENGTH * 0.75) * stature_m
     return PartGeometry(bone=f"{side}_hand", shapes=(box((0.0, 0.0, -drop - 0.15), (0.38, 0.10, 0.28)),))
+
+
+def phone(side: str, stature_m: float) -> PartGeometry:
+    """Make a telephone that lies in a palm."""
+    inward = -1.0 if side == "left" else 1.0
+    centre = (0.0, 0.028 * inward, -0.6 * table.HAND_LENGTH * stature_m)
+    return PartGeometry(bone=f"{side}_hand", shapes=(box(centre, (0.072, 0.009, 0.15)),))
 
 
 def bone_index(parts: Mapping[str, PartGeometry]) -> NDArray[np.int64]:
