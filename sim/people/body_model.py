@@ -43,9 +43,9 @@ from peopleboy.sim.shapes.skins import Skin
 
 Array = NDArray[np.float64]
 
-_CARRIED = (BAG_PART, PHONE_PART)
-ARM_PARTS = (*_LIMBS, *_CARRIED)
-PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, *_CARRIED), start=1)}
+_CARRIED_PARTS = (BAG_PART, PHONE_PART)
+ARM_PARTS = (*_LIMBS, *_CARRIED_PARTS)
+PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, *_CARRIED_PARTS), start=1)}
 
 _ARM_POSTURES: Final[Mapping[Arms, Posture]] = {
     "crossed": Posture.ARMS_CROSSED,
@@ -127,7 +127,7 @@ def make_body_model(
     size = measure(config.height_m, config.sex, config.build)
     manner = _manner_of(config, USUAL if finisher is None else finisher.manner)
     plan = _plan(config, size, NOTHING_MORE if finisher is None else finisher.outfit, body)
-    plan = replace(plan, geometry=plan.geometry | _phone_of(manner, size))
+    plan = replace(plan, geometry=plan.geometry | _carried(config, manner, size))
     materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK, PHONE_PART: _PHONE_LOOK}
     if finisher is not None:
         materials = finisher.finish(materials, plan.geometry, plan.head_m)
@@ -162,12 +162,10 @@ def make_body_model(
 
 def _plan(config: PersonConfig, size: BodySize, outfit: Outfit, body: RestBody | None) -> BodyPlan:
     """Return the plan of a person of capsules, or of one with a skin on a body."""
-    own_bag = {BAG_PART: bag(_BAG_HAND, size.stature_m)} if config.bag else {}
     if body is not None:
-        plan = dress_body(body, size, config.clothes, outfit)
-        return replace(plan, geometry=plan.geometry | own_bag)
+        return dress_body(body, size, config.clothes, outfit)
     thickness_m = config.clothes.thickness_m()
-    parts = build_body(size, config.clothes.hair, thickness_m) | own_bag
+    parts = build_body(size, config.clothes.hair, thickness_m)
     joint_bone, joint_offset = joint_points(size)
     return BodyPlan(
         skin=None,
@@ -181,12 +179,13 @@ def _plan(config: PersonConfig, size: BodySize, outfit: Outfit, body: RestBody |
     )
 
 
-def _phone_of(manner: Manner, size: BodySize) -> dict[str, PartGeometry]:
-    """Return the telephone of a person who holds one, in one hand."""
+def _carried(config: PersonConfig, manner: Manner, size: BodySize) -> dict[str, PartGeometry]:
+    """Return the configured bag, and the telephone of a person who holds one."""
+    carried = {BAG_PART: bag(_BAG_HAND, size.stature_m)} if config.bag else {}
     for side, hold in zip(SIDES, manner.holds, strict=True):
         if hold in ("telephone", "phone_in_hand"):
-            return {PHONE_PART: phone(side, size.stature_m)}
-    return {}
+            return carried | {PHONE_PART: phone(side, size.stature_m)}
+    return carried
 
 
 def _manner_of(config: PersonConfig, own: Manner) -> Manner:
