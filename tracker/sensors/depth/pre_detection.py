@@ -179,7 +179,10 @@ class PreDetector:
         top, bottom = _rows_of(
             depth,
             (piece.left, piece.right),
-            (1000.0 * (piece.depth_m - reach), 1000.0 * (piece.depth_m + reach)),
+            (
+                1000.0 * min(piece.depth_m - reach, piece.near_m),
+                1000.0 * max(piece.depth_m + reach, piece.far_m),
+            ),
             (first[row], last[row]),
         )
         if bottom < top:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -41,6 +42,13 @@ def test_two_people_are_told_apart_by_depth_though_their_columns_overlap() -> No
 def test_who_is_cut_off_by_the_image_is_expected_to_be_no_taller_than_what_can_be_seen() -> None:
     (near,) = DETECT(depth_of([Block(0.0, 1.5)]), make_view()).detections
     assert near.probability > 0.3
+
+
+def test_a_box_begins_at_a_head_behind_the_chest() -> None:
+    leaning = [Block(0.0, 1.0 + 0.04 * step, height_m=1.4 + 0.06 * step) for step in range(5)]
+    (found,) = DETECT(depth_of(leaning, height_m=1.5), make_view(1.5)).detections
+    top = make_view(1.5).calibration.project(np.array([[1.16, 0.0, 1.64]]))[0, 1]
+    assert found.box[1] == pytest.approx(top, abs=1.5)
 
 
 def test_the_printed_size_rates_what_a_camera_sees_of_a_body_lower() -> None:
