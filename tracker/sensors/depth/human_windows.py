@@ -37,7 +37,7 @@ _RELIEF_M: Final = 0.6  # depth range of a window in front of and behind a body
 
 def range_of(z_m: float, floor: HeightLine, view: DepthView, rows: int) -> WindowRange:
     """Return the range of a detection: far if its feet would be in the image (SA eq. 4.16)."""
-    half_angle = math.atan((rows / 2.0 + view.horizon_px) / view.focal_px)
+    half_angle = math.atan((rows - 0.5 - view.centre_v - view.horizon_px) / view.focal_px)
     farthest = floor.offset_m * math.tan(math.pi / 2.0 - half_angle) + _SAFETY_M
     return WindowRange.FAR if z_m > farthest else WindowRange.NEAR
 

@@ -22,6 +22,7 @@ _LEAST_VOTES: Final = 400.0
 _ROWS_PER_BIN: Final = BIN_PX / BASELINE_M  # slope of a line for each metre below the camera
 _SHIFT_PX: Final = 16.0
 _FLOOR_M: Final = (0.3, 2.4)  # range of the camera's height above the floor
+_NEAREST_FLOOR_M: Final = 6.0  # depth of the floor in the last row, from which the floor is not searched for
 _STEEPEST_RAD: Final = math.radians(45.0)
 _TOLERANCES_M: Final = (0.12, 0.08, 0.05, 0.05)
 _LEAST_SPREAD: Final = 0.06  # standard deviation of depths by their mean
@@ -54,15 +55,19 @@ def v_disparity(depth: Depth, view: DepthView) -> Counts:
     return _histogram(depth, _bin_of_mm(view.disparity_px_m))
 
 
-def find_floor(counts: Counts, view: DepthView, shift_px: float = _SHIFT_PX) -> HeightLine | None:
+def find_floor(counts: Counts, view: DepthView) -> HeightLine | None:
     """Return the line of the floor by a Hough vote over height and horizon, or None.
+
+    None, too, if the image shows the floor from afar only: the vote would find another line.
 
     Args:
         counts: from `v_disparity`.
         view: geometry of the image.
-        shift_px: how far the horizon may be from where the view has it.
     """
-    return _strongest(counts, view, *_FLOOR_M, shift_px)
+    lowest = (len(counts) - 0.5 - view.centre_v - view.horizon_px) / view.focal_px
+    if view.height_m > _NEAREST_FLOOR_M * lowest:
+        return None
+    return _strongest(counts, view, *_FLOOR_M, _SHIFT_PX)
 
 
 def estimate_camera_pose(depths: Iterable[Depth], view: DepthView) -> tuple[float, float] | None:
@@ -73,7 +78,7 @@ def estimate_camera_pose(depths: Iterable[Depth], view: DepthView) -> tuple[floa
     widest_px = view.focal_px * math.tan(_STEEPEST_RAD)
     fitted = []
     for depth in depths:
-        line = find_floor(v_disparity(depth, view), view, widest_px)
+        line = _strongest(v_disparity(depth, view), view, *_FLOOR_M, widest_px)
         fitted.append(None if line is None else _fit_line(line, depth, view))
     floors = [one for one in fitted if one is not None]
     if not floors or 2 * len(floors) < len(fitted):

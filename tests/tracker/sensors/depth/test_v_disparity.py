@@ -29,6 +29,12 @@ def test_floor_is_found_at_the_height_and_slope_of_the_camera(height_m: float, h
     assert floor.rows(at, view) == pytest.approx(expected, abs=3.0)
 
 
+def test_a_floor_that_is_only_seen_from_afar_is_not_searched_for() -> None:
+    depth = depth_of([Block(0.0, 3.0)], height_m=1.5)[:140]
+    view = make_view(1.5)
+    assert find_floor(v_disparity(depth, view), view) is None
+
+
 @pytest.mark.parametrize(("height_m", "pitch_deg"), [(1.2, 0.0), (0.6, -6.0), (1.55, 16.0), (2.2, 40.0)])
 def test_pose_is_that_of_the_plane_below_the_camera(height_m: float, pitch_deg: float) -> None:
     view, pitch_rad = make_view(), np.radians(pitch_deg)
