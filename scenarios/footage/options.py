@@ -27,8 +27,8 @@ VERTICAL_FOV_DEG: Final = 43.0
 USUAL_HEIGHT_M: Final = 1.2
 """Height of a camera above the floor where it is neither given nor found."""
 STEEPEST_DEG: Final = 60.0
-LEVEL_DEG: Final = 10.0
-"""Maximum tilt at which boxes and floor positions are accurate; the tracker assumes a horizontal camera."""
+LEVEL_DEG: Final = 30.0
+"""Maximum tilt at which boxes and floor positions are accurate; beyond, few heads are in the image."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,9 +75,7 @@ class FootageCamera:
         """Known limitations of the tracker with this camera."""
         if self.pitch_deg is None or abs(self.pitch_deg) <= LEVEL_DEG:
             return []
-        return [
-            f"boxes and positions are inaccurate beyond {LEVEL_DEG:g} degrees of pitch; keep the camera level"
-        ]
+        return [f"boxes and positions are inaccurate beyond {LEVEL_DEG:g} degrees of pitch"]
 
     def geometry(self, width: int, height: int) -> Pinhole:
         """Return the camera's geometry for an image size [px]; x and y start below its lens."""

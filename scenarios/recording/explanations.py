@@ -229,8 +229,8 @@ def _(
     explanation: DepthExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
     found = [
-        (_frame(one.box), VERIFIED if score > 0.0 else NOBODYS)
-        for one, score in zip(explanation.layout.detections, explanation.scores, strict=False)
+        (_frame(box), VERIFIED if score > 0.0 else NOBODYS)
+        for box, score in zip(explanation.boxes, explanation.scores, strict=False)
     ]
     return {DEPTH: Sketch.of(None, found + _floor_ellipses(tracks, cameras[DEPTH].camera))}
 

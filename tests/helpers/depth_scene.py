@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -25,10 +26,11 @@ class Block:
     height_m: float = 1.65
 
 
-def make_view(height_m: float = 1.2) -> DepthView:
-    """A level camera above the robot's origin."""
+def make_view(height_m: float = 1.2, pitch_rad: float = 0.0) -> DepthView:
+    """A camera above the robot's origin, by default level; a positive pitch points down."""
+    cos, sin = math.cos(pitch_rad), math.sin(pitch_rad)
     pose = np.array(
-        [[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, height_m], [0.0, 0.0, 0.0, 1.0]]
+        [[0.0, -sin, cos, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -cos, -sin, height_m], [0.0, 0.0, 0.0, 1.0]]
     )
     intrinsics = np.array(
         [[FOCAL_PX, 0.0, (WIDTH - 1) / 2], [0.0, FOCAL_PX, (HEIGHT - 1) / 2], [0.0, 0.0, 1.0]]
@@ -43,11 +45,15 @@ def depth_of(
     ceiling_m: float = 2.7,
     wall_m: float = 9.0,
     horizon_px: float = 0.0,
+    pitch_rad: float = 0.0,
 ) -> Depth:
     """Draw floor, ceiling, a wall across and blocks (H, W) [mm]."""
     v, u = np.mgrid[0:HEIGHT, 0:WIDTH].astype(float)
     across = (u - (WIDTH - 1) / 2) / FOCAL_PX
     down = (v - (HEIGHT - 1) / 2 - horizon_px) / FOCAL_PX
+    cos, sin = math.cos(pitch_rad), math.sin(pitch_rad)
+    ahead = cos - sin * down  # level distance by depth
+    across, down = across / ahead, (cos * down + sin) / ahead
     with np.errstate(divide="ignore"):
         floor = np.where(down > 0, height_m / down, np.inf)
         ceiling = np.where(down < 0, (height_m - ceiling_m) / down, np.inf)
@@ -57,4 +63,4 @@ def depth_of(
         is_in = np.abs(across * block.z_m - block.x_m) <= block.width_m / 2
         is_in &= (down * block.z_m >= top) & (down * block.z_m <= bottom) & (block.z_m < depth)
         depth = np.where(is_in, block.z_m, depth)
-    return as_taken(np.round(1000.0 * depth).astype(np.uint16))
+    return as_taken(np.round(1000.0 * depth / ahead).astype(np.uint16))

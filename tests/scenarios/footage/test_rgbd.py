@@ -183,9 +183,9 @@ def test_pictures_named_by_seconds_go_together_by_time_and_tell_it(tmp_path: Pat
 
 def test_who_looks_down_too_far_is_told(tmp_path: Path) -> None:
     colour, depth = write_rgbd(tmp_path, 1)
-    assert "10 degrees" not in call(colour, *options(depth), "--pitch-deg", 10).stderr
-    told = call(colour, *options(depth), "--pitch-deg", -20, "--overwrite").stderr
-    assert "10 degrees of pitch" in told
+    assert "30 degrees" not in call(colour, *options(depth), "--pitch-deg", 30).stderr
+    told = call(colour, *options(depth), "--pitch-deg", -40, "--overwrite").stderr
+    assert "30 degrees of pitch" in told
 
 
 def test_odometry_goes_to_the_tracker(tmp_path: Path) -> None:

@@ -10,12 +10,13 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Floats, Frame, FreshImages
-from peopleboy.tracker.sensors.depth.depth_view import DepthView, RgbdView, box_at
+from peopleboy.tracker.sensors.depth.depth_view import DepthView, LevelView, RgbdView, box_at
 from peopleboy.tracker.sensors.depth.depth_visibility import (
     depth_visibility,
     describe_readings,
     find_torso,
     surface_m,
+    view_of,
     warmth,
 )
 from peopleboy.tracker.sensors.depth.guided_search import GuidedMeasurement, search_near
@@ -52,6 +53,9 @@ from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 _SHOULDERS_M: Final = 0.48  # width that the search near a prediction expects
 WIDE_M: Final = 0.42
+_BORDER: Final = 0.02  # share of the rows at the top of the image: an object there reaches beyond it
+_HEADLESS: Final = -0.6  # least log-odds of an object whose head is outside the image: no new person
+_UNSEEN_SD_M: Final = 1.0  # standard deviation of the height of a head outside the image
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,12 +120,14 @@ class DepthExplanation:
     """The detections of the last depth image.
 
     Attributes:
-        layout: structure of the depth image.
+        layout: structure of the depth image, as a level camera sees it.
+        boxes: (N, 4) [px] of the objects of human size in the depth image.
         places_m: (M, 2) forward and left in the robot frame.
         scores: (M,) log-odds.
     """
 
     layout: Layout
+    boxes: Floats
     places_m: Floats
     scores: Floats
 
@@ -168,6 +174,7 @@ class DepthSensor:
         self._detector = PreDetector(self._config.size, self._config.above)
         self._images = FreshImages(DEPTH)
         self._shape: tuple[int, int] | None = None
+        self._level: tuple[Frame, LevelView, Frame] | None = None
         self._explanation: DepthExplanation | None = None
 
     @property
@@ -196,15 +203,18 @@ class DepthSensor:
         """
         if self._images.of(frame) is None:
             return None
-        view = self._view(frame)
+        _check_sizes(frame)
+        level, seen = self._levelled(frame)
+        view = self._view(seen)
         layout = self._detector(view.depth, view.geometry)
-        found = [self._classified(one, layout, view, frame) for one in layout.detections]
+        found = [self._classified(one, layout, view, seen, predicted) for one in layout.detections]
         assigned: dict[int, int] = {}
-        for row, near in self._guided(predicted, found, layout, view, frame).items():
+        for row, near in self._guided(predicted, found, layout, view, seen).items():
             assigned[row] = len(found)
             found.append(near)
         self._explanation = DepthExplanation(
             layout,
+            level.boxes_in_image(np.array([one.box for one in layout.detections]).reshape(-1, 4)),
             np.array([one.place_m for one in found]).reshape(-1, 2),
             np.array([one.score for one in found]),
         )
@@ -224,22 +234,42 @@ class DepthSensor:
     def remember(self, detections: SensorDetections, found: Mapping[int, int], keys: Sequence[int]) -> None:
         """Remember nothing of tracks."""
 
-    def _view(self, frame: Frame) -> RgbdView:
-        geometry = DepthView.of(frame.calibrations.get(DEPTH), DEPTH)
-        depth, colour = frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
-        if depth.shape != colour.shape[:2]:
-            sizes = f"{depth.shape} and {colour.shape[:2]}"
-            raise BadInput(f"{DEPTH} and {DEPTH_COLOUR} must show the same pixels, got {sizes}")
-        self._shape = (depth.shape[0], depth.shape[1])
-        return RgbdView(depth, colour, geometry, self._config.body_m)
+    def _levelled(self, frame: Frame) -> tuple[LevelView, Frame]:
+        """Return the view of a level camera, and the frame as it sees it."""
+        if self._level is None or self._level[0] is not frame:
+            rows, columns = self._shape = frame.depth(DEPTH).shape
+            view = LevelView.of(
+                DepthView.of(frame.calibrations.get(DEPTH), DEPTH).calibration, (rows, columns)
+            )
+            self._level = frame, view, view.transform_frame(frame)
+        return self._level[1:]
 
-    def _classified(self, found: PreDetection, layout: Layout, view: RgbdView, frame: Frame) -> _Found:
+    def _view(self, frame: Frame) -> RgbdView:
+        geometry = DepthView.of(frame.calibrations[DEPTH], DEPTH)
+        return RgbdView(frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR), geometry, self._config.body_m)
+
+    def _classified(
+        self, found: PreDetection, layout: Layout, view: RgbdView, frame: Frame, predicted: Predictions
+    ) -> _Found:
         """Classify an object of human size."""
         geometry = view.geometry
-        log_odds = self._window_log_odds(found.box, found.z_m, layout, view) + self._warmth(found, frame)
         ground = layout.floor.slope * found.z_m + layout.floor.offset_m
         tall_m = ground - (found.box[1] - geometry.centre_v) * found.z_m / geometry.focal_px
-        return self._measured(found, tall_m, log_odds, view)
+        log_odds = self._window_log_odds(found.box, found.z_m, layout, view)
+        head_sd_m = self._config.head_sd_m
+        if found.box[1] <= _BORDER * len(view.depth):
+            tall_m = max(tall_m, self._stature_at(body_position(found, view), predicted))
+            found = _extended(found, (tall_m - ground) * geometry.focal_px / found.z_m - geometry.centre_v)
+            whole = self._window_log_odds(found.box, found.z_m, layout, view)
+            log_odds, head_sd_m = max(log_odds, whole, _HEADLESS), _UNSEEN_SD_M
+        return self._measured(found, tall_m, head_sd_m, log_odds + self._warmth(found, frame), view)
+
+    def _stature_at(self, place_m: Floats, predicted: Predictions) -> float:
+        """Return the stature [m] of the track at a position (2,), or the usual one if there is none."""
+        away = np.hypot(*(predicted.places_m - place_m).T)
+        if not len(away) or away.min() > self._config.own_m:
+            return STATURE_M
+        return STATURE_M * math.exp(float(predicted.states.mean[away.argmin(), 6]))
 
     def _window_log_odds(self, box: Box, z_m: float, layout: Layout, view: RgbdView) -> float:
         """Classify the window of a person with a box [px] at a depth."""
@@ -250,7 +280,9 @@ class DepthSensor:
         neutral = config.neutral_far if kind is WindowRange.FAR else config.neutral_near
         return min(max(config.score_gain * (score - neutral), -config.most), config.most)
 
-    def _measured(self, found: PreDetection, tall_m: float, log_odds: float, view: RgbdView) -> _Found:
+    def _measured(
+        self, found: PreDetection, tall_m: float, head_sd_m: float, log_odds: float, view: RgbdView
+    ) -> _Found:
         """Measure the position and the width of a person [m] tall, by the torso if it is visible."""
         config, geometry = self._config, view.geometry
         height_px = tall_m * geometry.focal_px / found.z_m
@@ -266,7 +298,7 @@ class DepthSensor:
         return _Found(
             place_m=body_position(found, view),
             head_m=tall_m,
-            deviation_m=(across, along, config.head_sd_m),
+            deviation_m=(across, along, head_sd_m),
             score=log_odds,
             ratio=ratio,
         )
@@ -297,7 +329,7 @@ class DepthSensor:
             seen = search_near(place, _SHOULDERS_M, tall, frame)
             if seen is None or (seen.warm is not None and seen.warm < config.guided_warm):
                 continue
-            deviation = (config.guided_sd_m, config.guided_sd_m, 1.0)
+            deviation = (config.guided_sd_m, config.guided_sd_m, _UNSEEN_SD_M)
             near[row] = _Found(seen.place_m, tall, deviation, self._guided_score(seen, tall, layout, view))
         return near
 
@@ -322,10 +354,13 @@ class DepthSensor:
     ) -> SensorDetections:
         assert predicted.origin_m is not None
         assert self._shape is not None
-        origin, calibration = predicted.origin_m, frame.calibrations[DEPTH]
+        origin, (level, seen) = predicted.origin_m, self._levelled(frame)
         at = np.array([one.place_m for one in found]).reshape(-1, 2)
         heads = np.array([one.head_m for one in found])
-        view = Viewpoint.of(calibration, self._shape, origin, self._motion.toe_m)
+        view, upright = (
+            Viewpoint.of(each, self._shape, origin, self._motion.toe_m)
+            for each in (frame.calibrations[DEPTH], level.calibration)
+        )
         measurement = FloorMeasurement(
             places_m=level_places(at, origin),
             heads_m=heads,
@@ -336,11 +371,13 @@ class DepthSensor:
         )
         pattern, colours = no_appearance(len(found))
         for number, one in enumerate(found):
-            colours[number] = describe_readings(frame, one.place_m, one.head_m)
+            colours[number] = describe_readings(seen, one.place_m, one.head_m)
         expected = predicted_boxes(predicted.states, view, predicted.ratio)
         ratios = np.array([one.ratio for one in found])
         has_width = ~np.isnan(ratios)
         ratios[~has_width] = USUAL_RATIO
+        upright_boxes = measurement_boxes(measurement, upright, ratios)
+        ratios *= _ratios(level.boxes_in_image(upright_boxes)) / _ratios(upright_boxes)
         ratios[list(assigned.values())] = predicted.ratio[list(assigned)]
         boxes = measurement_boxes(measurement, view, ratios)
         return SensorDetections(
@@ -360,8 +397,9 @@ class DepthSensor:
 
     def visibility(self, frame: Frame, predicted: Predictions) -> Visibility | None:
         """Read the depth image at each track; None without one."""
-        if DEPTH not in frame.images or predicted.origin_m is None:
+        if view_of(frame) is None or predicted.origin_m is None:
             return None
+        _, frame = self._levelled(frame)
         places = predicted.places_m
         count, config = len(places), self._config
         hidden, is_present, is_absent = np.full(count, np.nan), np.zeros(count, bool), np.zeros(count, bool)
@@ -376,6 +414,24 @@ class DepthSensor:
             is_certain = predicted.states.covariance[row, 2, 2] < config.certain_m**2
             is_absent[row] = is_certain and seen.beyond > config.seen_through
         return Visibility(hidden, is_present, is_absent)
+
+
+def _extended(found: PreDetection, above_px: float) -> PreDetection:
+    """Return an object whose box begins so many rows above the image."""
+    left, top, width, height = found.box
+    return replace(found, box=(left, -above_px, width, height + top + above_px))
+
+
+def _ratios(boxes: Floats) -> Floats:
+    """Return the widths (M,) of boxes (M, 4), in heights."""
+    return np.asarray(boxes[:, 2] / boxes[:, 3])
+
+
+def _check_sizes(frame: Frame) -> None:
+    depth, colour = frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
+    if depth.shape != colour.shape[:2]:
+        sizes = f"{depth.shape} and {colour.shape[:2]}"
+        raise BadInput(f"{DEPTH} and {DEPTH_COLOUR} must show the same pixels, got {sizes}")
 
 
 def measurement_boxes(measurement: FloorMeasurement, view: Viewpoint, ratios: Floats) -> Floats:

@@ -1,14 +1,17 @@
-"""Geometry of a depth image in metres."""
+"""Geometry of a depth image in metres, and the view of a level camera."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from typing import Any, Final
 
+import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
-from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame
 from peopleboy.tracker.track import Box
 
 Depth = NDArray[np.uint16]
@@ -19,6 +22,10 @@ Image = NDArray[np.uint8]
 
 BASELINE_M = 0.075
 """Baseline of the thesis's sensor; it only defines the unit of disparities."""
+
+_STEEPEST_RAD: Final = math.radians(45.0)
+_STEEPEST: Final = 1.2  # tangent of the steepest ray of a level image: beyond, pixels are stretched too much
+_TORSO: Final = 0.35  # row of a box, in heights from the top, in which its width is measured
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +78,90 @@ class DepthView:
         points = np.stack([x_m, np.zeros_like(x_m), z_m], axis=-1)
         pose = self.calibration.robot_from_camera
         return np.asarray(points @ pose[:2, :3].T + pose[:2, 3])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LevelView:
+    """The view of a level camera at the position of a pitched one: a rotation of its rays.
+
+    There, walls are vertical planes of one depth in each column, and people have one depth from head to feet.
+
+    Attributes:
+        calibration: of the level camera.
+        shape: rows and columns of its image, which contains the other one.
+        level_from_image: (3, 3) homography of pixels; None if the camera is level.
+    """
+
+    calibration: PinholeCalibration
+    shape: tuple[int, int]
+    level_from_image: Floats | None
+
+    @classmethod
+    def of(cls, calibration: PinholeCalibration, shape: tuple[int, int]) -> "LevelView":
+        """Make the view for a camera with images of some rows and columns.
+
+        A camera that is steeper than 45 degrees keeps its own view.
+        """
+        pose, intrinsics = calibration.robot_from_camera, calibration.intrinsics
+        is_level = np.allclose(pose[2, :3], [0.0, -1.0, 0.0], atol=1e-6)
+        if is_level or abs(pose[2, 2]) > math.sin(_STEEPEST_RAD):
+            return cls(calibration, shape, None)
+        level = pose.copy()
+        level[:3, :3] = _level_axes(pose[:3, 2])
+        level_from_pixel = level[:3, :3].T @ pose[:3, :3] @ np.linalg.inv(intrinsics)
+        rows, columns = shape
+        corners = np.array([[u, v, 1.0] for u in (0.0, columns - 1.0) for v in (0.0, rows - 1.0)])
+        rays = corners @ level_from_pixel.T
+        rays = np.clip(rays[:, :2] / np.maximum(rays[:, 2:], 0.1), -_STEEPEST, _STEEPEST)
+        first, last = (rays.min(axis=0), rays.max(axis=0)) @ intrinsics[:2, :2].T
+        matrix = intrinsics.copy()
+        matrix[:2, 2] = -np.floor(first)
+        width, height = np.ceil(last - np.floor(first)).astype(int) + 1
+        return cls(PinholeCalibration(matrix, level), (int(height), int(width)), matrix @ level_from_pixel)
+
+    def transform_frame(self, frame: Frame) -> Frame:
+        """Return a frame with the depth camera's images as the level camera sees them."""
+        if self.level_from_image is None:
+            return frame
+        size = self.shape[1], self.shape[0]
+        near = cv2.warpPerspective(frame.depth(DEPTH), self.level_from_image, size, flags=cv2.INTER_NEAREST)
+        images: dict[str, NDArray[Any]] = {DEPTH: _deepen(np.asarray(near, np.uint16), self.level_from_image)}
+        if DEPTH_COLOUR in frame.images:
+            images[DEPTH_COLOUR] = cv2.warpPerspective(
+                frame.rgb(DEPTH_COLOUR), self.level_from_image, size, borderMode=cv2.BORDER_REPLICATE
+            )
+        if THERMAL in frame.images:
+            images[THERMAL] = frame.images[THERMAL]
+        return replace(frame, images=images, calibrations={**frame.calibrations, DEPTH: self.calibration})
+
+    def boxes_in_image(self, boxes: Floats) -> Floats:
+        """Return boxes (N, 4) [px] of the level image in that of the camera, as wide as at the torso."""
+        if self.level_from_image is None or not len(boxes):
+            return boxes
+        left, top, width, height = boxes.T
+        middle, torso = left + width / 2.0, top + _TORSO * height
+        ends = [(middle, top), (middle, top + height), (left, torso), (left + width, torso)]
+        pixels = np.stack([np.stack(end, axis=1) for end in ends])
+        back = np.linalg.inv(self.level_from_image)
+        (_, first), (_, last), (start, _), (end, _) = cv2.perspectiveTransform(pixels, back).transpose(
+            0, 2, 1
+        )
+        return np.stack([start, first, end - start, last - first], axis=1)
+
+
+def _deepen(depth: Depth, level_from_image: Floats) -> Depth:
+    """Return a depth image (H, W) along the level axis, from readings along the camera's."""
+    across, down, straight = np.linalg.inv(level_from_image)[2]
+    rows, columns = (np.arange(count) for count in depth.shape)
+    by_level = across * columns + down * rows[:, None] + straight  # depth of each ray by its level depth
+    return np.asarray(np.minimum(np.rint(depth / np.maximum(by_level, 0.1)), 65535.0), np.uint16)
+
+
+def _level_axes(forward: Floats) -> Floats:
+    """Return the axes (3, 3) of a level camera with the heading of an optical axis (3,)."""
+    ahead = np.array([forward[0], forward[1], 0.0]) / np.hypot(forward[0], forward[1])
+    down = np.array([0.0, 0.0, -1.0])
+    return np.column_stack([np.cross(down, ahead), down, ahead])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

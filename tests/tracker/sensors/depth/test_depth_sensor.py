@@ -22,6 +22,18 @@ HEIGHT_M = 1.2
 SHIRT, OTHER = (230, 20, 20), (20, 230, 20)
 
 
+class Sure:
+    """A model of windows with one score for all."""
+
+    sees_depth = True
+
+    def __init__(self, score: float) -> None:
+        self.score = score
+
+    def look(self, *_: object) -> float:
+        return self.score
+
+
 def frame_of(*blocks: Block, time_s: float = 0.0) -> Frame:
     """Return an image of blocks, the first of which is red."""
     depth = depth_of(blocks)
@@ -85,15 +97,6 @@ def test_a_half_covered_person_is_found_near_the_prediction() -> None:
 
 
 def test_what_is_found_near_a_prediction_is_classified_where_no_thermal_image_shows_it() -> None:
-    class Sure:
-        sees_depth = True
-
-        def __init__(self, score: float) -> None:
-            self.score = score
-
-        def look(self, *_: object) -> float:
-            return self.score
-
     frame = frame_of(Block(0.0, 4.0), Block(-0.35, 2.5, width_m=0.6))
     config = DepthSensorConfig(own_m=0.0)
     for score in (-1.0, 0.7, 9.0):
@@ -104,6 +107,33 @@ def test_what_is_found_near_a_prediction_is_classified_where_no_thermal_image_sh
         log_odds = found.scores[found.assigned[0]]
         expected = min(max(config.score_gain * (score - config.neutral_far), -config.most), 1.0)
         assert log_odds == pytest.approx(expected), score
+
+
+def test_a_near_person_has_a_box_from_the_usual_head_where_the_image_cuts_it_off() -> None:
+    frame = frame_of(Block(0.0, 1.0))  # the image shows up to 1.6 m
+    found = DepthSensor(model=cast(WindowModel, Sure(1.0))).detect(frame, predictions())
+    assert found is not None
+    head = frame.calibrations[DEPTH].project(np.array([[1.1, 0.0, STATURE_M]]))
+    assert found.boxes[0, 1] == pytest.approx(head[0, 1], abs=3.0)
+    assert found.boxes[0, 1] + found.boxes[0, 3] > HEIGHT
+
+
+def test_a_head_outside_the_image_keeps_the_stature_of_the_track() -> None:
+    here = predictions((0.0, 1.1))
+    here.states.mean[0, 6] = np.log(1.9 / STATURE_M)
+    found = DepthSensor().detect(frame_of(Block(0.0, 1.0)), here)
+    assert found is not None
+    later = found.measurement.update(here.states, [0])
+    assert STATURE_M * np.exp(later.mean[0, 6]) == pytest.approx(1.9, abs=0.01)
+
+
+def test_a_torso_without_head_neither_begins_a_track_nor_counts_against_one() -> None:
+    found = DepthSensor(model=cast(WindowModel, Sure(-5.0))).detect(
+        frame_of(Block(0.0, 1.0), Block(0.9, 4.0)), predictions()
+    )
+    assert found is not None
+    assert found.scores == pytest.approx([-0.6, -3.0])
+    assert found.scores[0] < found.settings.existence.birth
 
 
 def test_colours_are_those_of_the_persons_own_readings() -> None:
