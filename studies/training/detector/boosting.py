@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.sensors.thermal.detector.cascade import DEPTH, LEAVES, NODES
 from peopleboy.tracker.sensors.thermal.detector.patches import Patches, Sums
+from peopleboy.tracker.sensors.thermal.detector.vector_trees import DEPTH, LEAVES, NODES
 
 Given = TypeVar("Given")
 Found = TypeVar("Found")

@@ -4,9 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.sensors.thermal.detector.box_regression import OFFSETS, BoxRegression
-from peopleboy.tracker.sensors.thermal.detector.cascade import LEAVES, NODES, Cascade
+from peopleboy.tracker.sensors.thermal.detector.cascade import Cascade
 from peopleboy.tracker.sensors.thermal.detector.channels import CHANNELS
 from peopleboy.tracker.sensors.thermal.detector.patches import Patches
+from peopleboy.tracker.sensors.thermal.detector.vector_trees import LEAVES, NODES
 from peopleboy.tracker.sensors.thermal.detector.window import COLUMNS as WINDOW_COLUMNS
 from peopleboy.tracker.sensors.thermal.detector.window import ROWS as WINDOW_ROWS
 

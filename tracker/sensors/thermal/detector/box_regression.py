@@ -1,22 +1,30 @@
 """Box regression: boosted trees that predict where in a window the person is."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.sensors.thermal.detector.cascade import NODES, find_leaf
 from peopleboy.tracker.sensors.thermal.detector.channels import Cells
-from peopleboy.tracker.sensors.thermal.detector.patches import Layouts, Patches, Sums
+from peopleboy.tracker.sensors.thermal.detector.patches import Patches, Sums
+from peopleboy.tracker.sensors.thermal.detector.vector_trees import (
+    LANES,
+    LEAVES,
+    PACKED,
+    Trees,
+    add_tree,
+    pack,
+)
 from peopleboy.tracker.sensors.thermal.detector.window import Floats
 
 OFFSETS: Final = 4
 """Numbers that encode a person's box relative to its window: see `encode_boxes`."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class BoxRegression:
     """Trees for each of the offsets.
 
@@ -31,17 +39,17 @@ class BoxRegression:
     feature: NDArray[np.int32]
     threshold: NDArray[np.float32]
     leaf: NDArray[np.float32]
-    _layouts: Layouts = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        """Keep where patches lie."""
-        object.__setattr__(self, "_layouts", Layouts(self.patches, self.feature))
+    @cached_property
+    def _packed(self) -> Trees:
+        """The trees for packed windows."""
+        return Trees.packed(self.patches, self.feature, self.threshold, self.leaf)
 
     def boxes(self, sums: Sums, row: NDArray[np.int64], column: NDArray[np.int64], window: Floats) -> Floats:
         """Return the boxes (N, 4) of the people in windows that begin in some cells and have boxes (N, 4)."""
+        _, high, wide = sums.shape
         offsets = np.empty((len(row), OFFSETS), np.float32)
-        at = row * sums.shape[2] + column
-        _place(sums.ravel(), at, *self._layouts.of(sums), self.threshold.ravel(), self.leaf, offsets)
+        _place(sums.ravel(), high, wide, (row * wide + column).astype(np.uint64), self._packed, offsets)
         return decode_boxes(window, offsets.astype(np.float64))
 
 
@@ -73,21 +81,17 @@ def decode_boxes(window: Floats, offsets: Floats) -> Floats:
 
 @njit(cache=True, nogil=True)
 def _place(
-    sums: Sums,
-    begin: NDArray[np.int64],
-    offset: NDArray[np.uint32],
-    weight: Cells,
-    threshold: Cells,
-    leaf: Cells,
-    result: Cells,
+    sums: Sums, high: int, wide: int, at: NDArray[np.uint64], trees: Trees, result: Cells
 ) -> None:  # pragma: no cover
-    """Add up all trees, one after the other for all windows: trees take more memory than windows."""
-    trees = leaf.shape[1]
-    result[:] = 0.0
-    for offset_of in range(leaf.shape[0]):
-        for tree in range(trees):
-            nodes = np.uint32((offset_of * trees + tree) * NODES)
-            for number in range(len(begin)):
-                at = np.uint32(begin[number])
-                end = find_leaf(sums, at, offset, weight, threshold, nodes)
-                result[number, offset_of] += leaf[offset_of, tree, end]
+    """Add up the trees of each offset, for windows at positions in sums of `high` by `wide`."""
+    packed, total = np.empty(PACKED, np.int32), np.empty(LANES, np.float32)
+    each = len(trees.leaf) // (LEAVES * OFFSETS)
+    for first in range(0, len(at), LANES):
+        eight = at[first : first + LANES]
+        pack(sums, high, wide, eight, packed)
+        for offset in range(OFFSETS):
+            total[:] = 0.0
+            for tree in range(offset * each, offset * each + each):
+                add_tree(packed, np.uint64(0), trees, np.uint64(tree), np.float32(0.0), total)
+            for lane in range(len(eight)):
+                result[first + lane, offset] = total[lane]

@@ -4,7 +4,8 @@ Source: Bourdev and Brandt, CVPR 2005. After each tree, windows are rejected who
 nearly all people at that stage.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -12,15 +13,23 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.sensors.thermal.detector.channels import Cells
-from peopleboy.tracker.sensors.thermal.detector.patches import Layouts, Patches, Sums, patch
+from peopleboy.tracker.sensors.thermal.detector.patches import Patches, Sums, patch
+from peopleboy.tracker.sensors.thermal.detector.vector_trees import (
+    DEPTH,
+    LANES,
+    NODES,
+    PACKED,
+    Trees,
+    add_tree,
+    pack,
+)
 from peopleboy.tracker.sensors.thermal.detector.window import COLUMNS, ROWS
 
-DEPTH: Final = 3
-NODES: Final = 2**DEPTH - 1
-LEAVES: Final = 2**DEPTH
 STRIDE: Final = 2  # [cells] between windows of the coarse scan
 _EARLY: Final = 32
-"""Trees that nearly no window passes."""
+"""Trees that nearly no window passes; from the next one on, windows are worth packing."""
+_REPACKED: Final = 256
+"""Trees after which the remaining windows are packed again."""
 PROMISING: Final = 256
 """Number of passed trees from which the neighbours of a window are evaluated, too."""
 
@@ -53,7 +62,7 @@ class Hits(NamedTuple):
         return self.take(is_kept)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Cascade:
     """Trees of depth 3; each node sends a window to the right if its patch is above a threshold.
 
@@ -71,11 +80,11 @@ class Cascade:
     threshold: NDArray[np.float32]
     leaf: NDArray[np.float32]
     least: NDArray[np.float32]
-    _layouts: Layouts = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        """Cache the layouts of patches."""
-        object.__setattr__(self, "_layouts", Layouts(self.patches, self.feature))
+    @cached_property
+    def _packed(self) -> Trees:
+        """The trees for packed windows."""
+        return Trees.packed(self.patches, self.feature, self.threshold, self.leaf)
 
     def scan(
         self,
@@ -99,15 +108,20 @@ class Cascade:
         first, end = max(rows[0], 0), min(rows[1], high - ROWS)
         if end <= first or wide - 1 < COLUMNS:
             return Hits(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
-        offset, weight = self._layouts.of(sums)
-        found = np.full((end - first, wide - COLUMNS), -np.inf, np.float32)
-        is_passed = np.zeros(found.shape, np.bool_) if is_known is None else is_known[first:end]
-        _scan(
-            sums.ravel(), wide, first, offset, weight, self.threshold.ravel(), self.leaf.ravel(), self.least,
-            stride, min(promising, len(self.least)), is_passed, found,
+        offset, weight = self.patches.corners(self.feature[:_EARLY].ravel(), high, wide)
+        # Vectors may extend beyond the last window, but not beyond the sums.
+        flat, last = sums.ravel(), (high - ROWS) * wide - COLUMNS - LANES
+        if last < 0:
+            flat, last = np.append(flat, np.zeros(LANES, np.int32)), 0
+        shape = (end - first, wide - COLUMNS)
+        at, score = _scan(
+            flat, high, wide, first, np.uint64(last), self._packed._replace(offset=offset, weight=weight),
+            self._packed, self.least, stride, min(promising, len(self.least)),
+            np.zeros(shape, np.bool_) if is_known is None else is_known[first:end],
         )  # fmt: skip
-        at_row, at_column = np.nonzero(found > -np.inf)
-        return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
+        order = np.argsort(at)
+        row, column = np.divmod(at[order].astype(np.int64), wide)
+        return Hits(row, column, score[order].astype(np.float64))
 
     def calibrated(self, gain: float, offset: float) -> "Cascade":
         """Return the same trees with scores multiplied by a gain plus an offset."""
@@ -141,54 +155,47 @@ def find_leaf(
 @njit(cache=True, nogil=True)
 def _scan(
     sums: Sums,
+    high: int,
     wide: int,
     first: int,
-    offset: NDArray[np.uint32],
-    weight: Cells,
-    threshold: Cells,
-    leaf: Cells,
+    last: np.uint64,
+    early_trees: Trees,
+    trees: Trees,
     least: Cells,
     stride: int,
     promising: int,
     is_passed: NDArray[np.bool_],
-    found: Cells,
-) -> None:  # pragma: no cover
-    """Evaluate a grid of windows, then the neighbours of promising ones, and write their scores.
+) -> tuple[NDArray[np.uint64], Cells]:  # pragma: no cover
+    """Evaluate a grid of windows, then the neighbours of promising ones; return the rest and their scores.
 
-    Rows are processed separately while many windows are rejected, so that their data stay in the cache; then
-    all remaining windows of a level go through one tree after the other, as trees take more memory than their
-    data.
+    While many windows are rejected, rows are processed separately, so that their data stay in the cache.
     """
-    rows, columns = found.shape
+    rows, columns = is_passed.shape
     early = min(_EARLY, promising)
-    at, score = np.empty(rows * columns, np.uint32), np.empty(rows * columns, np.float32)
+    at, score = np.empty(rows * columns, np.uint64), np.zeros(rows * columns + LANES, np.float32)
     is_wanted = np.zeros((rows, columns), np.bool_)
     none: int = np.int64(0)  # type: ignore[assignment]  # a literal would compile the kernels a second time
     left = none
     for i in range(0, rows, stride):
         count = none
         for j in range(0, columns, stride):
-            at[left + count], score[left + count] = (i + first) * wide + j, 0.0
+            at[left + count] = (i + first) * wide + j
             count += not is_passed[i, j]
-        some, theirs = at[left : left + count], score[left : left + count]
-        left += _walk(sums, some, theirs, count, offset, weight, threshold, leaf, least[:early], none)
-    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least[:promising], early)
+        left += _walk_neighbours(sums, last, at[left:], score[left:], count, early_trees, least[:early])
+    left = _walk(sums, high, wide, at, score, left, trees, least[:promising], early)
     for k in range(left):
         row, column = np.int64(at[k]) // wide - first, np.int64(at[k]) % wide
         top, begin = max(row - stride + 1, 0), max(column - stride + 1, 0)
         is_wanted[top : min(row + stride, rows), begin : min(column + stride, columns)] = True
-    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, promising)
-    for k in range(left):
-        found[np.int64(at[k]) // wide - first, np.int64(at[k]) % wide] = score[k]
-    left = none
+    left = _walk(sums, high, wide, at, score, left, trees, least, promising)
+    count = none
     for i in range(rows):
         for j in range(columns):
             if is_wanted[i, j] and not is_passed[i, j] and (i % stride != 0 or j % stride != 0):
-                at[left], score[left] = (i + first) * wide + j, 0.0
-                left += 1
-    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, none)
-    for k in range(left):
-        found[np.int64(at[k]) // wide - first, np.int64(at[k]) % wide] = score[k]
+                at[left + count], score[left + count] = (i + first) * wide + j, 0.0
+                count += 1
+    left += _walk(sums, high, wide, at[left:], score[left:], count, trees, least, none)
+    return at[:left], score[:left]
 
 
 @njit(cache=True, nogil=True)
@@ -206,32 +213,74 @@ def _compare(
 
 
 @njit(cache=True, nogil=True)
-def _walk(
+def _walk_neighbours(
     sums: Sums,
-    at: NDArray[np.uint32],
+    last: np.uint64,
+    at: NDArray[np.uint64],
     score: Cells,
     count: int,
-    offset: NDArray[np.uint32],
-    weight: Cells,
-    threshold: Cells,
-    leaf: Cells,
+    trees: Trees,
+    least: Cells,
+) -> int:  # pragma: no cover
+    """Evaluate windows at ascending positions in sums, and move the remaining ones to the front.
+
+    Each vector has eight neighbouring windows, from at most the position `last` on, of which some are wanted.
+    """
+    first, wanted = np.empty(count, np.uint64), np.zeros(count, np.uint8)
+    scores = np.zeros((count, LANES), np.float32)
+    vectors, k = 0, 0
+    while k < count:
+        first[vectors] = min(at[k], last)
+        while k < count and at[k] < first[vectors] + np.uint64(LANES):
+            wanted[vectors] |= np.uint64(1) << (at[k] - first[vectors])
+            k += 1
+        vectors += 1
+    for tree in range(len(least)):
+        kept = 0
+        for k in range(vectors):
+            rest = wanted[k] & add_tree(sums, first[k], trees, np.uint64(tree), least[tree], scores[k])
+            first[kept], wanted[kept] = first[k], rest
+            for lane in range(LANES):
+                scores[kept, lane] = scores[k, lane]
+            kept += rest != 0
+        vectors = kept
+    count = 0
+    for k in range(vectors):
+        for lane in range(LANES):
+            if wanted[k] >> lane & 1:
+                at[count], score[count] = first[k] + np.uint64(lane), scores[k, lane]
+                count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _walk(
+    sums: Sums,
+    high: int,
+    wide: int,
+    at: NDArray[np.uint64],
+    score: Cells,
+    count: int,
+    trees: Trees,
     least: Cells,
     begin: int,
 ) -> int:  # pragma: no cover
-    """Evaluate windows at positions in sums from one tree on, and move the remaining ones to the front.
-
-    All windows go through a tree before the next one, so that no window waits for the data of another.
-    """
-    for tree in range(begin, len(least)):
+    """Evaluate windows at positions in sums from one tree on, and move the remaining ones to the front."""
+    packed = np.empty(PACKED, np.int32)
+    for first in range(begin, len(least), _REPACKED):
         kept = 0
-        nodes, leaves, limit = np.uint32(tree * NODES), np.uint32(tree * LEAVES), least[tree]
-        for k in range(count):
-            total = score[k] + leaf[leaves + find_leaf(sums, at[k], offset, weight, threshold, nodes)]
-            at[kept], score[kept] = at[k], total
-            kept += total >= limit
+        for k in range(0, count, LANES):
+            some = min(count - k, LANES)
+            pack(sums, high, wide, at[k : k + some], packed)
+            rest = (1 << some) - 1
+            for tree in range(first, min(first + _REPACKED, len(least))):
+                rest &= add_tree(packed, np.uint64(0), trees, np.uint64(tree), least[tree], score[k:])
+                if rest == 0:
+                    break
+            for lane in range(some):
+                at[kept], score[kept] = at[k + lane], score[k + lane]
+                kept += rest >> lane & 1
         count = kept
-        if count == 0:
-            break
     return count
 
 

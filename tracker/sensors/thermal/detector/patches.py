@@ -24,9 +24,6 @@ PART: Final = np.float32(512.0)
 CORNERS: Final = 8
 """Signs of the corners of two rectangles: last and first are added, the others subtracted."""
 
-_LAYOUTS: Final = 40
-"""Number of cached sizes: an image has half as many."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Patches:
@@ -57,26 +54,6 @@ class Patches:
         result = np.empty(sums.shape[1], np.float32)
         _measure(sums, offset[0], weight[0], result)
         return result
-
-
-class Layouts:
-    """Layouts of patches in sums of several sizes, as for the levels of consecutive images."""
-
-    def __init__(self, patches: Patches, feature: NDArray[np.int32]) -> None:
-        """Store the patches of the nodes."""
-        self._patches = patches
-        self._feature = feature.ravel()
-        self._kept: dict[tuple[int, int], Layout] = {}
-
-    def of(self, sums: Sums) -> Layout:
-        """Return the layout in sums (9, h + 1, w + 1)."""
-        _, high, wide = sums.shape
-        layout = self._kept.get((high, wide))
-        if layout is None:
-            if len(self._kept) >= _LAYOUTS:
-                self._kept.clear()
-            layout = self._kept[high, wide] = self._patches.corners(self._feature, high, wide)
-        return layout
 
 
 def integrate(cells: Cells) -> Sums:

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
 from peopleboy.tracker.sensors.thermal.detector.box_regression import OFFSETS, BoxRegression
-from peopleboy.tracker.sensors.thermal.detector.cascade import LEAVES, NODES, Cascade
+from peopleboy.tracker.sensors.thermal.detector.cascade import Cascade
 from peopleboy.tracker.sensors.thermal.detector.channels import CHANNELS
 from peopleboy.tracker.sensors.thermal.detector.patches import Patches
+from peopleboy.tracker.sensors.thermal.detector.vector_trees import LEAVES, NODES
 from peopleboy.tracker.sensors.thermal.detector.window import COLUMNS, ROWS, WindowKind
 
 MODEL: Final = "cascade"

@@ -34,6 +34,20 @@ def test_all_windows_have_the_score_that_their_trees_add_up_to() -> None:
         assert score == pytest.approx(score_of(window, cascade)[-1], abs=1e-4)
 
 
+@pytest.mark.parametrize("promising", [0, 256])  # with packed windows alone, and with neighbours
+def test_windows_at_once_have_the_scores_of_windows_alone_to_the_last_bit(promising: int) -> None:
+    cells, cascade = drawn_cells(), drawn_cascade()
+    alone = np.stack([sums_of_window(cells, row, column) for row, column in all_places()], axis=1)
+    hits = cascade.scan(integrate(cells), (0, 34), stride=1, promising=promising)
+    np.testing.assert_array_equal(hits.score, cascade.running(alone)[:, -1])
+
+
+def test_sums_may_have_the_size_of_a_window() -> None:
+    cells, cascade = np.ascontiguousarray(drawn_cells()[:, :ROWS, :COLUMNS]), drawn_cascade()
+    hits = cascade.scan(integrate(cells), (0, 1))
+    np.testing.assert_array_equal(hits.score, cascade.running(integrate(cells).reshape(-1, 1))[:, -1])
+
+
 def test_a_window_that_is_not_let_go_has_the_score_that_it_has_without_letting_go() -> None:
     cells = drawn_cells()
     all_of_them = drawn_cascade().scan(integrate(cells), (0, 34), stride=1)
