@@ -24,7 +24,7 @@ from docs.generate.pictures import (
 )
 from docs.generate.pictures.front import runs
 from docs.generate.pictures.paper import COLOURS, save
-from docs.generate.pictures.worlds import detections, hard_scenes, light, reactions, skins
+from docs.generate.pictures.worlds import detections, failures, hard_scenes, light, reactions, skins
 from peopleboy.studies.reproductions.pictures.panoramic_figures import draw_features
 from peopleboy.studies.reproductions.pictures.situation_figures import draw_part_scores
 
@@ -44,6 +44,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "equipment": skins.equipment,
     "people_at_distances": skins.distances,
     "hard_scenes": hard_scenes.hard_scenes,
+    "failures": failures.failures,
     "rays": rays.layers,
     "silhouettes": rays.silhouettes,
     "panorama": panorama.raw_and_unrolled,
@@ -72,6 +73,7 @@ FEWER_COLOURS = {
     "first_run": 80,
     "panorama": 96,
     "scene_model": 192,
+    "failures": 48,
     "skins": 48,
     "equipment": 40,
     "people_at_distances": 64,
