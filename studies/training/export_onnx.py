@@ -21,7 +21,7 @@ from peopleboy.tracker.reproductions.panoramic.distance_network import (
     DistanceModel,
     file_name,
 )
-from peopleboy.tracker.sensors.panorama.people_foreground import FILE, ForegroundModel
+from peopleboy.tracker.sensors.panorama.people_foreground import ForegroundModel, shipped_foreground
 from peopleboy.tracker.sensors.panorama.place_model import PlaceModel
 from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 
@@ -210,7 +210,7 @@ NETWORKS: Final[Mapping[str, Callable[[], OnnxExport]]] = {
         "offsets of the box, before `BoxRefinementNetwork.predict` scales them",
     ),
     "places": lambda: _place_model(PlaceModel.load()),
-    "foreground": lambda: _foreground(ForegroundModel.load(SHIPPED / FILE)),
+    "foreground": lambda: _foreground(shipped_foreground()),
     "distance-room_long": lambda: _distance(DistanceModel.load(SHIPPED / file_name("room_long"))),
     "distance-room_narrow": lambda: _distance(DistanceModel.load(SHIPPED / file_name("room_narrow"))),
 }

@@ -17,16 +17,18 @@ from pydantic import Field
 from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights
 from peopleboy.studies.training.panorama_sequences import (
+    CAMERA_HELP,
     PanoramaSequence,
     render_task,
     scene_calibration,
+    training_view,
 )
 from peopleboy.studies.training.random_scenes import FIRST_SEED
 from peopleboy.studies.training.samples import Split, Tasks
 from peopleboy.studies.training.specification import Specification, report
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
-from peopleboy.tracker.sensors.panorama.panorama_view import view_of
-from peopleboy.tracker.sensors.panorama.people_foreground import FILE, Foreground, ForegroundModel
+from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaName
+from peopleboy.tracker.sensors.panorama.people_foreground import FILES, Foreground, ForegroundModel
 
 Linear = NDArray[np.float32]
 Floats = NDArray[np.float64]
@@ -67,39 +69,41 @@ class ForegroundTraining(Specification[Tasks]):
         int, Field(ge=1, description="Number of training rounds, each on a hundred of the scenes.")
     ] = 12
 
+    camera: Annotated[PanoramaName, Field(description=CAMERA_HELP)] = "mirror"
+
     def tasks(self, out: Path) -> Tasks:
         """Render the scenes. They do not all fit into memory, so each file is read when it is needed."""
         seeds = range(FIRST_SEED, FIRST_SEED + self.sequences), range(self.validation)
-        return Split(*([render_task(out / "sequences", seed) for seed in part] for part in seeds))
+        folder = out / f"sequences-{self.camera}"
+        return Split(*([render_task(folder, seed, self.camera) for seed in part] for part in seeds))
 
     def fit(self, data: Tasks) -> Mapping[str, ForegroundModel]:
         """Train in rounds, and print the loss of each."""
-        paths, calibration = [task.path for task in data.training], scene_calibration(data.training[0])
-        height, width = PanoramaSequence.load(paths[0]).images.shape[1:3]
-        view, rng = view_of(calibration, width, height), np.random.default_rng(0)
-        optimiser = Optimiser(mask_loss, first_weights(height // BLOCK, rng))
+        scenes = [(task.path, scene_calibration(task)) for task in data.training]
+        view, rng = training_view(self.camera), np.random.default_rng(0)
+        optimiser = Optimiser(mask_loss, first_weights(view.height_px // BLOCK, rng))
         rates = np.geomspace(*RATES, self.rounds + 1).tolist()
         for number, (first, last) in enumerate(pairwise(rates), 1):
-            chosen = [paths[k] for k in rng.permutation(len(paths))[:_SEQUENCES_A_ROUND]]
+            chosen = [scenes[k] for k in rng.permutation(len(scenes))[:_SEQUENCES_A_ROUND]]
             model = ForegroundModel(network=MaskNetwork(**optimiser.weights), view=view)
-            samples = [one for path in chosen for one in collect_samples(path, model, calibration, rng)]
+            samples = [one for path, camera in chosen for one in collect_samples(path, camera, model, rng)]
             for ends in ((first, last), (last, last)):
                 loss = optimiser.run(batches(samples, rng, ends))["entropy"]
             report(f"round {number} of {self.rounds}: {loss:.4f} nat per pixel")
         about = {
-            "trained on": f"{len(paths)} random scenes, seeds from {FIRST_SEED}",
+            "trained on": f"{len(scenes)} random scenes, seeds from {FIRST_SEED}",
             "training": f"{self.rounds} rounds, {optimiser.steps} steps",
         }
-        return {FILE: ForegroundModel(network=MaskNetwork(**optimiser.weights), view=view, about=about)}
+        network = MaskNetwork(**optimiser.weights)
+        return {FILES[self.camera]: ForegroundModel(network=network, view=view, about=about)}
 
     def evaluate(self, model: ForegroundModel, data: Tasks) -> Mapping[str, str]:
         """Measure overlap and errors per person, for a standing and for a driving robot."""
-        calibration = scene_calibration(data.training[0])
         sums = {"a standing robot": MaskScores(), "a driving robot": MaskScores()}
         for task in data.validation:
             sequence = PanoramaSequence.load(task.path)
             robot = "a driving robot" if sequence.is_driven else "a standing robot"
-            score_masks(sequence, segment(sequence, model, calibration), sums[robot])
+            score_masks(sequence, segment(sequence, model, scene_calibration(task)), sums[robot])
         return {f"on other scenes, {robot}": str(scores) for robot, scores in sums.items() if scores.images}
 
 
@@ -111,7 +115,7 @@ def segment(sequence: PanoramaSequence, model: ForegroundModel, calibration: Cal
 
 
 def collect_samples(
-    path: Path, model: ForegroundModel, calibration: Calibration, rng: np.random.Generator
+    path: Path, calibration: Calibration, model: ForegroundModel, rng: np.random.Generator
 ) -> Iterator[Sample]:
     """Run on an augmented sequence, and yield two excerpts of some images: at random, and around a person."""
     sequence = _augment(PanoramaSequence.load(path), rng)

@@ -1,8 +1,9 @@
 """Rendered sequences of the panoramic camera, with ground truth for every pixel."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import numpy as np
 import yaml
@@ -12,15 +13,31 @@ from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.random_worlds.draw_scene import Data, rounded
 from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import calibrations_of
+from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.studies.training.random_scenes import random_scene
 from peopleboy.studies.training.samples import Arrays, SampleTask
 from peopleboy.tracker.frame import PANORAMA, Odometry
+from peopleboy.tracker.sensors.panorama.panorama_view import (
+    ALL_ROUND_M,
+    PanoramaName,
+    PanoramaView,
+    all_round,
+    view_over,
+)
 
 Floats = NDArray[np.float64]
+
+CAMERA_HELP: Final = (
+    "Camera of the images: the default mirror, or the all-round view, into which other panoramas are "
+    "resampled."
+)
+
+_LENS_M: Final = 0.001  # so close to its mirror that all columns share a centre
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,12 +95,27 @@ def render_panoramas(scenario: Scenario, seed: int) -> PanoramaSequence:
     return PanoramaSequence(**{name: np.array(values) for name, values in seen.items()})
 
 
-def render_random_scene(folder: Path, seed: int) -> PanoramaSequence:
+def render_random_scene(folder: Path, seed: int, camera: PanoramaName) -> PanoramaSequence:
     """Draw the scene of a seed, write its scenario to the folder, and render it."""
     path = scenario_path(folder, seed)
+    own = all_round_camera(seed) if camera == "all-round" else {}
     with atomic(path) as part:
-        part.write_text(yaml.safe_dump(random_scene(seed), sort_keys=False), encoding="utf-8")
+        scene = random_scene(seed, PANORAMA, own)
+        part.write_text(yaml.safe_dump(scene, sort_keys=False), encoding="utf-8")
     return render_panoramas(load_scenario(path), seed)
+
+
+def all_round_camera(seed: int) -> Data:
+    """Return the keys of a camera with the view `all_round`, at a random height."""
+    height_m = rounded(np.random.default_rng((seed, 360)).uniform(*ALL_ROUND_M))
+    view = all_round(height_m)
+    mirror = {
+        "half_apex_deg": 45.0 + math.degrees(view.axis_rad) / 2.0,
+        "lens_half_angle_deg": math.degrees(math.atan(view.height / view.focal_px)),
+        "lens_m": _LENS_M,
+        "apex_m": height_m,
+    }
+    return {"width_px": view.width, "height_px": view.height, "mirror": mirror}
 
 
 def scenario_path(folder: Path, seed: int) -> Path:
@@ -91,14 +123,22 @@ def scenario_path(folder: Path, seed: int) -> Path:
     return folder / f"scene_{seed}.yaml"
 
 
-def render_task(folder: Path, seed: int) -> SampleTask:
+def training_view(camera: PanoramaName) -> PanoramaView:
+    """Return the view of the training images."""
+    if camera == "all-round":
+        return view_over([all_round(height_m) for height_m in ALL_ROUND_M])
+    return view_over([Panorama().calibration])
+
+
+def render_task(folder: Path, seed: int, camera: PanoramaName = "mirror") -> SampleTask:
     """Return the task of rendering the scene of a seed."""
-    return SampleTask(scenario_path(folder, seed).with_suffix(".npz"), render_random_scene, (folder, seed))
+    path = scenario_path(folder, seed).with_suffix(".npz")
+    return SampleTask(path, render_random_scene, (folder, seed, camera))
 
 
 def scene_calibration(task: SampleTask) -> PanoramaCalibration:
     """Return the calibration of the camera that rendered the scene of a completed task."""
-    folder, seed = task.arguments
+    folder, seed, _ = task.arguments
     return panorama_calibration(load_scenario(scenario_path(folder, seed)), seed)
 
 

@@ -19,11 +19,13 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.studies.training.optimiser import Optimiser, Weights, shuffled
 from peopleboy.studies.training.panorama_sequences import (
+    CAMERA_HELP,
     PanoramaSequence,
     panorama_calibration,
     render_panoramas,
     render_task,
     scenario_path,
+    training_view,
 )
 from peopleboy.studies.training.random_scenes import FIRST_SEED
 from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, load_samples, sample_folder
@@ -32,10 +34,10 @@ from peopleboy.tracker.networks.inference import DenseNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED
 from peopleboy.tracker.sensors.panorama.figure_patch import PATCH, Map
 from peopleboy.tracker.sensors.panorama.panorama_patches import PanoramaScene, promising_places
-from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaView, view_of
-from peopleboy.tracker.sensors.panorama.people_foreground import FILE as FOREGROUND
-from peopleboy.tracker.sensors.panorama.people_foreground import Foreground
-from peopleboy.tracker.sensors.panorama.place_model import FILE, PlaceModel, with_distance
+from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaName, PanoramaView
+from peopleboy.tracker.sensors.panorama.people_foreground import FILES as FOREGROUNDS
+from peopleboy.tracker.sensors.panorama.people_foreground import Foreground, shipped_foreground
+from peopleboy.tracker.sensors.panorama.place_model import FILES, PlaceModel, with_distance
 
 Floats = NDArray[np.float64]
 
@@ -108,9 +110,11 @@ class _Standing(NamedTuple):
         return math.atan2(self.place_m[1], self.place_m[0])
 
 
-def sample_places(sequence: PanoramaSequence, calibration: PanoramaCalibration, seed: int) -> PlaceSamples:
+def sample_places(
+    sequence: PanoramaSequence, calibration: PanoramaCalibration, seed: int, camera: PanoramaName = "mirror"
+) -> PlaceSamples:
     """Run the tracker's foreground segmentation on a sequence, and collect patches at and beside people."""
-    rng, foreground = np.random.default_rng((seed, 2003)), Foreground()
+    rng, foreground = np.random.default_rng((seed, 2003)), Foreground(shipped_foreground(camera))
     parts = [_NONE]
     every = max(2, math.ceil(len(sequence.images) / IMAGES))
     for k, image in enumerate(sequence.images):
@@ -206,22 +210,25 @@ class PlacesTraining(Specification[Split[PlaceSamples]]):
     sequences: Annotated[
         int, Field(ge=2, le=100_000, alias="seeds", description="Number of random scenes to train on.")
     ] = 400
-    rendered: Annotated[
-        Path, Field(description="Folder of rendered scenes, shared with `train foreground`.")
-    ] = Path("runs/foreground/sequences")
+    rendered: Annotated[Path, Field(description="Folder with the rendered scenes of `train foreground`.")] = (
+        Path("runs/foreground")
+    )
+    camera: Annotated[PanoramaName, Field(description=CAMERA_HELP)] = "mirror"
 
     def tasks(self, out: Path) -> Tasks:
         """Render scenes and collect samples; these depend on the foreground network."""
-        with writing_to(self.rendered, "--rendered"):
-            self.rendered.mkdir(parents=True, exist_ok=True)
-        folder = sample_folder(out, Path(__file__), SHIPPED / FOREGROUND)
+        rendered = self.rendered / f"sequences-{self.camera}"
+        with writing_to(rendered, "--rendered"):
+            rendered.mkdir(parents=True, exist_ok=True)
+        folder = sample_folder(out, Path(__file__), SHIPPED / FOREGROUNDS[self.camera])
 
         def task(seed: int, scenario: str = "") -> SampleTask:
             path = folder / f"{scenario or 'scene'}_{seed}.npz"
-            return SampleTask(path, collect_places, (scenario, seed, self.rendered))
+            return SampleTask(path, collect_places, (scenario, seed, rendered, self.camera))
 
         training = [task(FIRST_SEED + k) for k in range(self.sequences)]
-        training += [task(FIRST_SEED + k, name) for name, count in LIBRARY.items() for k in range(count)]
+        if self.camera == "mirror":
+            training += [task(FIRST_SEED + k, name) for name, count in LIBRARY.items() for k in range(count)]
         return Split(training, [task(seed) for seed in range(VALIDATION)])
 
     def load(self, tasks: Tasks) -> Split[PlaceSamples]:
@@ -231,13 +238,14 @@ class PlacesTraining(Specification[Split[PlaceSamples]]):
     def fit(self, data: Split[PlaceSamples]) -> Mapping[str, PlaceModel]:
         """Train the three networks."""
         samples, people = data.training, int(data.training.is_person.sum())
-        calibration = panorama_calibration(load_scenario(next(iter(LIBRARY))), FIRST_SEED)
+        scenes = f"{self.sequences} random scenes"
+        if self.camera == "mirror":
+            scenes += f", and {', '.join(LIBRARY)}"
         about = {
-            "trained on": f"{people} patches with people and {len(samples) - people} without, "
-            f"from {self.sequences} random scenes, and {', '.join(LIBRARY)}, seeds from {FIRST_SEED}"
+            "trained on": f"{people} patches with people and {len(samples) - people} without, from {scenes}, "
+            f"seeds from {FIRST_SEED}"
         }
-        view = view_of(calibration, calibration.width, calibration.height)
-        return {FILE: replace(fit_places(samples, view), about=about)}
+        return {FILES[self.camera]: replace(fit_places(samples, training_view(self.camera)), about=about)}
 
     def evaluate(self, model: PlaceModel, data: Split[PlaceSamples]) -> Mapping[str, str]:
         """Evaluate offsets, their predicted deviations, and presence."""
@@ -253,17 +261,17 @@ class PlacesTraining(Specification[Split[PlaceSamples]]):
         }
 
 
-def collect_places(scenario: str, seed: int, rendered: Path) -> PlaceSamples:
+def collect_places(scenario: str, seed: int, rendered: Path, camera: PanoramaName) -> PlaceSamples:
     """Sample a scenario of the library, or a random scene, which is rendered unless its file exists."""
     if scenario:
         loaded = load_scenario(scenario)
         sequence = render_panoramas(loaded, seed)
     else:
-        task = render_task(rendered, seed)
+        task = render_task(rendered, seed, camera)
         if not task.path.is_file():
             task(lambda _: None)
         sequence, loaded = PanoramaSequence.load(task.path), load_scenario(scenario_path(rendered, seed))
-    return sample_places(sequence, panorama_calibration(loaded, seed), seed)
+    return sample_places(sequence, panorama_calibration(loaded, seed), seed, camera)
 
 
 class DenseRecipe(NamedTuple):

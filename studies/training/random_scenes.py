@@ -31,7 +31,7 @@ _LENGTHS: Final = {
 }  # fmt: skip
 
 
-def random_scene(seed: int, camera: str = "panorama") -> Data:
+def random_scene(seed: int, camera: str = "panorama", own: Data | None = None) -> Data:
     """Draw a scene, the data of a scenario file. Equal seeds give equal scenes.
 
     The robot drives in every other scene; one to four people walk or stand.
@@ -39,6 +39,7 @@ def random_scene(seed: int, camera: str = "panorama") -> Data:
     Args:
         seed: seed of everything that is drawn.
         camera: kind of the camera that renders the scene.
+        own: further keys of that camera.
     """
     rng = np.random.default_rng((seed, 2003))
     rate = int(rng.choice(list(IMAGES), p=[0.3, 0.2, 0.5]))
@@ -50,7 +51,8 @@ def random_scene(seed: int, camera: str = "panorama") -> Data:
         "clothes_differ": bool(rng.random() < 0.5),
         "lights": [{"at_s": 0.0, "level": rounded(rng.uniform(0.55, 1.1))}],
     }
-    scene |= until_valid(lambda: _stage(rng, camera, rate, duration_s), scene)
+    mounted = {"kind": camera, "rate_hz": rate} | (own or {})
+    scene |= until_valid(lambda: _stage(rng, mounted, duration_s), scene)
     place = scene["place"]
     for _ in range(rng.integers(0, 9)):
         scene = with_one_more(scene, "things", lambda: _thing(rng, place))
@@ -59,13 +61,13 @@ def random_scene(seed: int, camera: str = "panorama") -> Data:
     return scene
 
 
-def _stage(rng: Draw, camera: str, rate: int, duration_s: float) -> Data:
+def _stage(rng: Draw, camera: Data, duration_s: float) -> Data:
     """Draw a place with a robot that stands, or drives at random."""
     place = _place(rng)
     robot: Data = {
         "at_m": _point(rng, place),
         "heading_deg": rounded(rng.uniform(-180.0, 180.0)),
-        "cameras": {camera: {"kind": camera, "rate_hz": rate}},
+        "cameras": {camera["kind"]: camera},
     }
     if rng.random() < 0.65:
         robot |= {"behaviour": "scripted", "commands": _drive(rng, duration_s)}

@@ -30,10 +30,10 @@ def test_it_leaves_a_network_that_knows_its_camera_and_the_scenes_that_it_saw(le
     assert (model.view.width_px, model.view.height_px) == (480, 120)
     assert "seeds from 100" in model.about["trained on"]
     assert any("people found" in words for words in model.about.values())
-    assert sorted(path.name for path in (lesson / "sequences").iterdir()) == [
+    assert sorted(path.name for path in (lesson / "sequences-mirror").iterdir()) == [
         "scene_0.npz", "scene_0.yaml", "scene_100.npz", "scene_100.yaml",
     ]  # fmt: skip
-    assert load_scenario(lesson / "sequences" / "scene_100.yaml").spec == load_scenario_of(100)
+    assert load_scenario(lesson / "sequences-mirror" / "scene_100.yaml").spec == load_scenario_of(100)
 
 
 def load_scenario_of(seed):
@@ -43,14 +43,14 @@ def load_scenario_of(seed):
 @pytest.mark.thorough
 def test_another_lesson_uses_the_films_that_are_there_and_writes_the_same_bytes(lesson):
     first = (lesson / "foreground.npz").read_bytes()
-    filmed = (lesson / "sequences" / "scene_100.npz").stat().st_mtime_ns
+    filmed = (lesson / "sequences-mirror" / "scene_100.npz").stat().st_mtime_ns
     assert train(lesson) == 0
     assert (lesson / "foreground.npz").read_bytes() == first
-    assert (lesson / "sequences" / "scene_100.npz").stat().st_mtime_ns == filmed
+    assert (lesson / "sequences-mirror" / "scene_100.npz").stat().st_mtime_ns == filmed
 
 
 def test_a_perfect_answer_is_judged_perfect_and_none_as_none(lesson):
-    film = PanoramaSequence.load(lesson / "sequences" / "scene_100.npz")
+    film = PanoramaSequence.load(lesson / "sequences-mirror" / "scene_100.npz")
     perfect, nothing = MaskScores(), MaskScores()
     score_masks(film, [(who > 0).astype(np.float32) for who in film.person], perfect)
     score_masks(film, [np.zeros(who.shape, np.float32) for who in film.person], nothing)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from peopleboy.tracker.elementary import logarithm
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.networks.mask_network import BLOCK
-from peopleboy.tracker.sensors.panorama.floor_rows import FloorRows
+from peopleboy.tracker.sensors.panorama.floor_rows import FARTHEST_M, FloorRows
 
 Linear = NDArray[np.float32]
 Pair = tuple[float, float]
@@ -27,6 +27,7 @@ _TAU_S: Final = 2.0  # time constant of the background where it is visible,
 _VARIANCE_TAU_S: Final = 8.0
 _ABSORB_TAU_S: Final = 40.0  # and where people seem to occlude it.
 _OLDEST_S: Final = 60.0
+_WALLS_M: Final = 4.0  # usual distance of what is above the horizon
 _UNLIKE_FROM, _UNLIKE_TO = 0.8, 2.1  # two standard deviations, and eight
 
 
@@ -41,7 +42,8 @@ def first_memory(image: NDArray[np.uint8]) -> Linear:
 def move_along(memory: Linear, odometry: Odometry, floor: FloorRows) -> Linear:
     """Warp a memory (6, H, W) by the robot's motion, as if all surfaces were floor.
 
-    Areas that were outside the image get age 0. A rotation shifts columns of all surfaces alike.
+    Areas that were outside the image get age 0. A rotation shifts columns of all surfaces alike. Surfaces
+    above the horizon are not floor, and only rotate.
     """
     way, row = (odometry.advance_m, odometry.aside_m), (floor.horizon, floor.slope, floor.offset_m)
     return _moved(memory, way, odometry.turn_rad, floor.distance_m, row)
@@ -61,11 +63,13 @@ def _moved(memory: Linear, by_m: Pair, turn: float, distance: Linear, row_of: Tr
     corners, shares = np.empty((4, width), np.uint32), np.empty((2, width), np.float32)
     for v in range(height):
         columns[:], rows[:] = np.float32(-turn * per_rad), np.float32(v)
-        if way > 0.0:
+        is_floor = distance[v] < FARTHEST_M
+        if way > 0.0 and is_floor:
             _look_up(columns, rows, distance[v], along, across, row_of)
         _find(columns, rows, height, corners, shares)
         _interpolate(memory, corners, shares, moved, v)
-        doubt, age, more = moved[DOUBT, v], moved[AGE, v], np.float32(way / distance[v] * per_rad)
+        doubt, age = moved[DOUBT, v], moved[AGE, v]
+        more = np.float32(way / (distance[v] if is_floor else np.float32(_WALLS_M)) * per_rad)
         for u in range(width):
             doubt[u] += more
             if rows[u] < np.float32(-0.5) or rows[u] > np.float32(height - 0.5):

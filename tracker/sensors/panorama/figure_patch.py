@@ -103,7 +103,7 @@ def _patches(
                 for layer in range(LAYERS):
                     corners[j, i, layer] = _layer_at(sums, layer, middle - reach + i * step, rows[j])
         for j in range(UP):
-            area = step * (rows[j + 1] - rows[j])
+            area = max(step * (rows[j + 1] - rows[j]), 1e-9)  # rows far outside coincide
             for i in range(ACROSS):
                 for layer in range(LAYERS):
                     upper = corners[j, i + 1, layer] - corners[j, i, layer]

@@ -1,6 +1,7 @@
 """Segmentation of people in panoramas, image after image."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from functools import cache
 from pathlib import Path
@@ -17,7 +18,7 @@ from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OU
 from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
 from peopleboy.tracker.sensors.panorama.background_memory import compare, first_memory, learn, move_along
 from peopleboy.tracker.sensors.panorama.floor_rows import FloorRows, floor_rows
-from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaView, view_of
+from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaName, PanoramaView, view_of
 
 Linear = NDArray[np.float32]
 
@@ -25,7 +26,10 @@ _SHORTEST_S = 0.01
 _LEAST_WAY_M, _LEAST_TURN_RAD = 1e-3, 5e-4  # smaller motions are noise of standing wheels
 
 MODEL: Final = "foreground"
-FILE: Final = "foreground.npz"
+FILES: Final[Mapping[PanoramaName, str]] = {
+    "mirror": "foreground.npz",
+    "all-round": "foreground-all-round.npz",
+}
 
 _SPECS: Final = {
     "first": ArraySpec((INPUTS, "units")),
@@ -155,6 +159,6 @@ class Foreground:
 
 
 @cache
-def shipped_foreground() -> ForegroundModel:
-    """Read the shipped model, once."""
-    return ForegroundModel.load(SHIPPED / FILE)
+def shipped_foreground(camera: PanoramaName = "mirror") -> ForegroundModel:
+    """Read the shipped model of a view, once."""
+    return ForegroundModel.load(SHIPPED / FILES[camera])

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from peopleboy.tracker.networks.inference import DenseNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
 from peopleboy.tracker.sensors.panorama.figure_patch import PATCH, Map
-from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaView
+from peopleboy.tracker.sensors.panorama.panorama_view import PanoramaName, PanoramaView
 
 INPUTS = PATCH + 2
 _FARTHEST_M = 8.0
 
 MODEL: Final = "places"
-FILE: Final = "places.npz"
+FILES: Final[Mapping[PanoramaName, str]] = {"mirror": "places.npz", "all-round": "places-all-round.npz"}
 # Outputs of each network, and how many layers it has.
 _OUTPUTS: Final = {"presence": (1, 2), "place": (2, 3), "doubt": (2, 2)}
 
@@ -75,7 +75,7 @@ class PlaceModel:
         WeightsArchive(arrays, self.about, asdict(self.view)).save(path)
 
     @classmethod
-    def load(cls, path: Path = SHIPPED / FILE) -> "PlaceModel":
+    def load(cls, path: Path = SHIPPED / FILES["mirror"]) -> "PlaceModel":
         """Read and validate a model.
 
         Raises:

@@ -16,6 +16,7 @@ from peopleboy.tracker.sensors.panorama.figure_patch import (
     UP,
     FigureMap,
 )
+from peopleboy.tracker.sensors.panorama.panorama_view import all_round
 from tests.helpers.images.cardboard import CAMERA, HEIGHT, WIDTH, Cardboard, figures_of, mask_of
 
 BEARINGS, DISTANCES = st.floats(-math.pi, math.pi), st.floats(0.8, 8.0)
@@ -105,3 +106,11 @@ def test_beyond_the_lower_border_nothing_is_known():
     known = reported.reshape(LAYERS, UP, ACROSS)[KNOWN]
     assert known[0] == pytest.approx(1.0, abs=1e-3)
     assert not known[-1].any()
+
+
+def test_cells_far_above_a_low_camera_show_nothing():
+    low, maps = all_round(0.5), np.ones((3, 180, 480), np.float32)
+    figures = FigureMap.build(maps[0], maps[1], 0.0 * maps[2], low)
+    patch = figures.patches(np.zeros(1), np.array([0.6])).reshape(LAYERS, UP, ACROSS)
+    assert (patch[:, :3] == 0.0).all()
+    assert patch[KNOWN].max() == pytest.approx(1.0)

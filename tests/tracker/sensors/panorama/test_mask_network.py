@@ -13,7 +13,7 @@ from tests.helpers.calls.refused import refused
 
 ROWS, COLUMNS, UNITS = 10, 24, 12
 VIEW = PanoramaView(
-    width_px=COLUMNS * BLOCK, height_px=ROWS * BLOCK, centre_m=1.7, depression_deg=(8.0, 30.0, 55.0)
+    width_px=COLUMNS * BLOCK, height_px=ROWS * BLOCK, centre_m=(1.7, 1.7), depression_deg=(8.0, 30.0, 55.0)
 )
 
 

@@ -122,7 +122,7 @@ def test_layers_that_do_not_fit_are_refused(tmp_path, change, words):
 def test_what_comes_with_the_tracker_holds_for_the_usual_mirror():
     model = PlaceModel.load()
     assert model.view.refusal(VIEW) == ""
-    assert model.view.refusal(replace(VIEW, centre_m=1.5))
+    assert model.view.refusal(replace(VIEW, centre_m=(1.5, 1.5)))
     assert [getattr(model, name).layers[-1][1].size for name in OUTPUTS] == [1, 2, 2]
     for name in ("panoramic", "handover"):
         make_tracker(name).check_cameras({"panorama": CAMERA})
