@@ -23,8 +23,10 @@ from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.scenarios.running.engine.task import ReportProgress, chosen_workers
 from peopleboy.sim.cameras.camera_config import calibrations_of
+from peopleboy.sim.geometry.panorama import MIRRORS, Mirror, Panorama
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.sim.world import SimulatedWorld
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.floor import Places
 from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame
@@ -38,6 +40,16 @@ NEAREST_M: Final = 1.2
 FARTHEST_M: Final = 6.0
 ONE_IMAGE: Final = "one image"
 """The tracker `panoramic` without motion constraints: only the newest image determines positions."""
+
+OTHER_CAMERAS: Final = {
+    "narrow mirror": Panorama(mirror=MIRRORS["narrow"]),
+    "tall mirror at 1.3 m": Panorama(
+        mirror=Mirror(
+            half_apex_rad=math.radians(65.0), lens_half_angle_rad=math.radians(52.0), lens_m=0.05, apex_m=1.3
+        )
+    ),
+}
+"""Cameras other than the default: 35 to 8 degrees below the horizon, and 40 below to 12 above."""
 
 _RESTLESS: Final = 32.0  # acceleration [m/s2] that leaves nothing of the prediction
 ROUND: Final = "panoramic_round"
@@ -118,18 +130,19 @@ class Play:
     scenario: str
     tracker: str
     seed: int
+    camera: str = ""
     size: int = 1
 
     @property
     def name(self) -> str:
         """Name of the run."""
-        return f"{self.scenario} {self.tracker} {self.seed}"
+        return f"{self.scenario} {self.tracker} {self.camera} {self.seed}"
 
     def __call__(self, report_progress: ReportProgress) -> Played:  # noqa: ARG002
         """Execute the run."""
         tracker = _Timed(_make(self.tracker, self.seed))
         scenario = load_scenario(self.scenario).mounting(tracker.cameras)
-        config = scenario.world(self.seed)
+        config = _with_camera(scenario.world(self.seed), self.camera)
         rows, count, watch = _Rows(), 0, _Watch()
         with SimulatedWorld(config) as world:
             frames = round(scenario.duration_s * config.control_hz)
@@ -146,6 +159,15 @@ class Play:
             tuple(watch.times_s(watch.has_box)),
             watch.numbers,
         )
+
+
+def _with_camera(config: WorldConfig, name: str) -> WorldConfig:
+    """Replace the panoramic camera by another one, if there is a name."""
+    if not name:
+        return config
+    cameras = dict(config.robot.cameras)
+    cameras[PANORAMA] = replace(cameras[PANORAMA], camera=OTHER_CAMERAS[name])
+    return replace(config, robot=replace(config.robot, cameras=cameras))
 
 
 def _make(name: str, seed: int) -> Tracker:
@@ -245,20 +267,21 @@ def main(scenarios: tuple[str, ...], seeds: int, laps: int, first: int, workers:
     SCENARIOS are the scenarios to run; the default is all.
     """
     plan = [
-        (scenario, tracker, range(first, first + count))
-        for scenario, tracker, count in (
-            ("room_long", "panoramic-paper", 1),
-            ("room_long", ONE_IMAGE, seeds),
-            ("room_long", "panoramic", seeds),
-            ("panoramic_crossing", "panoramic", seeds),
-            ("panoramic_moving", "panoramic", seeds),
-            (ROUND, "handover", laps),
-        )
-        if not scenarios or scenario in scenarios
+        ("room_long", "panoramic-paper", 1, ""),
+        ("room_long", ONE_IMAGE, seeds, ""),
+        ("room_long", "panoramic", seeds, ""),
+        ("panoramic_crossing", "panoramic", seeds, ""),
+        ("panoramic_moving", "panoramic", seeds, ""),
+        (ROUND, "handover", laps, ""),
     ]
+    moved = ("panoramic_crossing", "panoramic_moving")
+    plan += [(scenario, "panoramic", seeds, camera) for scenario in moved for camera in OTHER_CAMERAS]
     tasks = {
-        (scenario, tracker): [Play(scenario, tracker, seed) for seed in chosen]
-        for scenario, tracker, chosen in plan
+        (f"{scenario} {camera}".strip(), tracker): [
+            Play(scenario, tracker, first + k, camera) for k in range(count)
+        ]
+        for scenario, tracker, count, camera in plan
+        if not scenarios or scenario in scenarios
     }
     found = compare(tasks, chosen_workers(workers, None), "all round")
     print_table(COLUMNS, ([*names, *_figures(runs)] for names, runs in found.items()), width=140)

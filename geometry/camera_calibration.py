@@ -80,19 +80,20 @@ class PinholeCalibration:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PanoramaCalibration:
-    """Calibration of a panoramic camera with a conical mirror above the robot's axis.
+    """Calibration of a panoramic camera on the robot's axis: one with a conical mirror, or equirectangular.
 
     Each column has one viewing direction. The first column points to the back of the robot; the next ones
     continue over the left, the front and the right to the back. Column numbers wrap around. For each column,
-    the mirror acts as a pinhole camera with its centre on a ring around the axis, and with an optical axis
-    that points at the lower image border.
+    a mirror acts as a pinhole camera with its centre on a ring around the axis, and with an optical axis that
+    points at the lower image border. In an equirectangular image, angles of rows are evenly spaced.
 
     Attributes:
         width, height: size of the image [px].
-        focal_px: focal length of the lens [px].
+        focal_px: focal length of the lens [px]; of an equirectangular image, pixels per radian.
         axis_rad: viewing angle of the lower image border below the horizon [rad].
         ring_radius_m: distance of the centres from the axis, in their viewing direction [m]; may be negative.
         ring_height_m: height of the centres above the floor [m].
+        is_equirectangular: whether angles of rows are evenly spaced.
 
     Raises:
         BadInput: a number is not finite, or the image size or the focal length is invalid.
@@ -104,6 +105,7 @@ class PanoramaCalibration:
     axis_rad: float
     ring_radius_m: float
     ring_height_m: float
+    is_equirectangular: bool = False
 
     def __post_init__(self) -> None:
         """Refuse invalid values."""
@@ -126,7 +128,14 @@ class PanoramaCalibration:
 
     def depression(self, rows: Floats) -> Floats:
         """Return the viewing angles (N,) of rows below the horizon [rad]."""
-        return np.asarray(self.axis_rad - np.arctan((self.height - 0.5 - rows) / self.focal_px), np.float64)
+        rise = (self.height - 0.5 - rows) / self.focal_px
+        above = rise if self.is_equirectangular else np.arctan(rise)
+        return np.asarray(self.axis_rad - above, np.float64)
+
+    def floor_m(self, row: float) -> float:
+        """Return the distance of the floor in a row [m]; infinite from the horizon upwards."""
+        down = float(self.depression(np.array(row)))
+        return self.ring_radius_m + self.ring_height_m / math.tan(down) if down > 0.0 else math.inf
 
     def project(self, points_m: Floats) -> Floats:
         """Map points (N, 3) of the robot's frame to pixels (N, 2), the column within the image.
@@ -135,13 +144,16 @@ class PanoramaCalibration:
         """
         x, y, z = points_m.T
         above = self.axis_rad - np.arctan2(self.ring_height_m - z, np.hypot(x, y) - self.ring_radius_m)
-        radius = self.focal_px * np.tan(np.where(np.abs(above) < math.pi / 2.0, above, np.nan))
+        if not self.is_equirectangular:
+            above = np.tan(np.where(np.abs(above) < math.pi / 2.0, above, np.nan))
         u = (0.5 - np.arctan2(y, x) / math.tau) * self.width - 0.5
-        return np.stack([u, self.height - 0.5 - radius], axis=1)
+        return np.stack([u, self.height - 0.5 - self.focal_px * above], axis=1)
 
     def row(self, distance_m: float, height_m: float) -> float:
         """Map what is so far away and so high in any direction to its row; NaN as `project` says."""
         above = self.axis_rad - math.atan2(self.ring_height_m - height_m, distance_m - self.ring_radius_m)
+        if self.is_equirectangular:
+            return self.height - 0.5 - self.focal_px * above
         is_before = abs(above) < math.pi / 2.0
         return self.height - 0.5 - self.focal_px * math.tan(above) if is_before else math.nan
 

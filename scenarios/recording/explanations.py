@@ -209,8 +209,11 @@ def _(
 def _(
     explanation: PanoramaExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
+    camera = cameras[PANORAMA].camera
+    if explanation.foreground.shape != (camera.height, camera.width):
+        return {}  # resampled into another view
     found = [(line, NOBODYS) for line in outlines_of(explanation.foreground > 0.5)]
-    coloured = found + _floor_ellipses(tracks, cameras[PANORAMA].camera)
+    coloured = found + _floor_ellipses(tracks, camera)
     return {PANORAMA: Sketch.of(explanation.background, coloured)}
 
 

@@ -40,6 +40,7 @@ class PanoramaScene:
         new: (H, W) difference from the background, 0..1.
         covered: (H, W) 1 where a found person is, 0 elsewhere.
         calibration: of the camera.
+        rows: first row, and the one after the last, that the camera sees; others are covered.
         figures: integral images of these maps; renewed by `cover`.
     """
 
@@ -48,16 +49,24 @@ class PanoramaScene:
     new: Map
     covered: Map
     calibration: PanoramaCalibration
+    rows: tuple[int, int]
     figures: FigureMap
 
     @classmethod
     def of(
-        cls, image: NDArray[np.uint8], foreground: Map, new: Map, calibration: PanoramaCalibration
+        cls,
+        image: NDArray[np.uint8],
+        foreground: Map,
+        new: Map,
+        calibration: PanoramaCalibration,
+        rows: tuple[int, int] | None = None,
     ) -> "PanoramaScene":
-        """Make one without people."""
-        covered = np.zeros_like(foreground)
+        """Make one without people; the camera sees all rows unless some are given."""
+        first, end = rows = (0, len(image)) if rows is None else rows
+        covered = np.ones_like(foreground)
+        covered[first:end] = 0.0
         figures = FigureMap.build(foreground, new, covered, calibration)
-        return cls(image, foreground, new, covered, calibration, figures)
+        return cls(image, foreground, new, covered, calibration, rows, figures)
 
     def cover(self, bearing_rad: float, distance_m: float) -> None:
         """Mark a found person's pixels as covered, for those behind."""
@@ -69,7 +78,8 @@ class PanoramaScene:
     def hidden_share(self, bearing_rad: float, distance_m: float) -> float:
         """Return the share of a body's visible area that is covered by others."""
         left, top, width, height = self.box(bearing_rad, distance_m)
-        top, bottom = max(top + 0.5, 0.0), min(top + height + 0.5, float(self.calibration.height))
+        first, end = self.rows
+        top, bottom = max(top + 0.5, float(first)), min(top + height + 0.5, float(end))
         if bottom - top < 1.0:
             return 0.0
         left = left + 0.5 + 0.25 * width

@@ -12,11 +12,13 @@ from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration, PanoramaCalibration
 from peopleboy.geometry.small_matrices import mahalanobis2
 from peopleboy.tracker.frame import PANORAMA, Floats, Frame, FreshImages, Odometry
+from peopleboy.tracker.networks.weights_archive import SHIPPED
 from peopleboy.tracker.sensors.panorama.figure_patch import Map
 from peopleboy.tracker.sensors.panorama.panorama_patches import PanoramaScene, person_box, promising_places
 from peopleboy.tracker.sensors.panorama.panorama_view import view_of
-from peopleboy.tracker.sensors.panorama.people_foreground import Foreground
-from peopleboy.tracker.sensors.panorama.place_model import PlaceModel
+from peopleboy.tracker.sensors.panorama.people_foreground import Foreground, shipped_foreground
+from peopleboy.tracker.sensors.panorama.place_model import FILES, PlaceModel
+from peopleboy.tracker.sensors.panorama.resampling import Resampling
 from peopleboy.tracker.tracking.appearance import Colours, describe_samples
 from peopleboy.tracker.tracking.config import STATURE_M, PeopleTrackerConfig
 from peopleboy.tracker.tracking.measurement import FloorMeasurement
@@ -115,12 +117,13 @@ class PanoramaSensor:
     """Detects people by a learned model of patches of the panorama, each scaled by its distance.
 
     People are detected from the nearest to the farthest, and each one's pixels are masked for those behind.
+    Images of the default mirror have networks of their own; those of other cameras are resampled.
 
     Args:
         config: of the sensor.
         tracker: settings of the tracker.
         model: detects people at positions in the panorama of the camera it was trained for; None for the
-            shipped one.
+            shipped one of the default mirror.
     """
 
     def __init__(
@@ -137,6 +140,7 @@ class PanoramaSensor:
         )
         self._model = PlaceModel.load() if model is None else model
         self._foreground = Foreground()
+        self._resampling: Resampling | None = None
         self._images = FreshImages(PANORAMA)
         self._camera: PanoramaCalibration | None = None
         self._scene: PanoramaScene | None = None
@@ -154,10 +158,10 @@ class PanoramaSensor:
         return PanoramaExplanation(self._foreground.background, self._scene.foreground, self._scene.covered)
 
     def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
-        """Refuse a camera that the model was not trained on, before the first frame.
+        """Refuse a camera that cannot be used, before the first frame.
 
         Raises:
-            BadInput: another camera, or one that is not panoramic.
+            BadInput: the camera is not panoramic, too low or too high, or does not show the floor.
         """
         self._checked(calibrations)
 
@@ -165,7 +169,7 @@ class PanoramaSensor:
         """Detect people in the next panorama; None without one.
 
         Raises:
-            BadInput: the image is invalid, or of a camera that the model was not trained on.
+            BadInput: the image is invalid, or of a camera that cannot be used.
         """
         fresh = self._images.of(frame)
         if fresh is None:
@@ -173,7 +177,7 @@ class PanoramaSensor:
         scene = self._look(fresh)
         found, assigned = self._expected(scene, predicted)
         self._search(scene, found)
-        return self._detections(found, assigned, predicted, scene)
+        return self._detections(found, assigned, predicted)
 
     def detect_in(self, frame: Frame, box: Floats, predicted: Predictions) -> SensorDetections | None:
         """Leave boxes to other sensors."""
@@ -200,22 +204,33 @@ class PanoramaSensor:
         """Remember nothing of tracks."""
 
     def _checked(self, calibrations: Mapping[str, Calibration]) -> PanoramaCalibration:
-        """Return the camera's calibration, if the model was trained on it."""
+        """Return the camera's calibration; a new camera needs networks for its view."""
         camera = calibrations.get(PANORAMA)
-        if camera is self._camera and self._camera is not None:
-            return self._camera
         if not isinstance(camera, PanoramaCalibration):
             raise BadInput(f"camera {PANORAMA!r}: the tracker needs a calibrated panoramic camera")
-        if why := self._model.view.refusal(view_of(camera, camera.width, camera.height)):
-            raise BadInput(f"{why}; no other networks are available")
-        self._camera = camera
+        if camera != self._camera:
+            self._resampling = None
+            if self._model.view.refusal(view_of(camera, camera.width, camera.height)):
+                self._resampling = Resampling.of(camera)
+                self._model = PlaceModel.load(SHIPPED / FILES["all-round"])
+                self._foreground = Foreground(shipped_foreground("all-round"))
+            self._camera = camera
         return camera
 
     def _look(self, frame: Frame) -> PanoramaScene:
         """Separate people from background in a new panorama."""
         image, calibration = frame.rgb(PANORAMA), self._checked(frame.calibrations)
+        if image.shape[:2] != (calibration.height, calibration.width):
+            given, known = f"{image.shape[1]}x{image.shape[0]}", f"{calibration.width}x{calibration.height}"
+            raise BadInput(
+                f"camera {PANORAMA!r}: must have the size of its calibration, {known}, got {given}"
+            )
+        rows = None
+        if self._resampling is not None:
+            image, rows = self._resampling.image(image), self._resampling.rows
+            calibration = self._resampling.calibration
         foreground = self._foreground.update(image, frame.time_s, frame.odometry or Odometry(), calibration)
-        self._scene = PanoramaScene.of(image, foreground, self._foreground.novelty, calibration)
+        self._scene = PanoramaScene.of(image, foreground, self._foreground.novelty, calibration, rows)
         return self._scene
 
     def _expected(
@@ -297,9 +312,9 @@ class PanoramaSensor:
         found: Sequence[_Located],
         assigned: Mapping[int, int],
         predicted: Predictions,
-        scene: PanoramaScene,
     ) -> SensorDetections:
         assert predicted.origin_m is not None
+        assert self._camera is not None
         origin = predicted.origin_m
         at = np.array([one.place_m for one in found]).reshape(-1, 2)
         along, across = np.array([one.deviation_m for one in found]).reshape(-1, 2).T
@@ -316,10 +331,10 @@ class PanoramaSensor:
         )
         return SensorDetections(
             camera=PANORAMA,
-            boxes=_boxes(_polar(at), scene.calibration),
+            boxes=_boxes(_polar(at), self._camera),
             scores=np.array([one.evidence for one in found]) - self._config.neutral,
             measurement=measurement,
-            expected=_boxes(_polar(predicted.places_m), scene.calibration),
+            expected=_boxes(_polar(predicted.places_m), self._camera),
             pattern=pattern,
             colours=colours,
             assigned=assigned,

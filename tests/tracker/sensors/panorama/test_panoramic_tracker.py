@@ -213,16 +213,24 @@ def test_it_explains_who_was_taken_for_whom():
     assert np.array_equal(reported.background, HALL)
 
 
-@pytest.mark.parametrize("other", [
-    replace(CAMERA, axis_rad=0.8), replace(CAMERA, ring_height_m=1.5), replace(CAMERA, width=360),
+@pytest.mark.parametrize(("other", "words"), [
+    (replace(CAMERA, ring_height_m=2.5), ("0.5 to 2 m", "2.50 m")),
+    (replace(CAMERA, ring_height_m=0.3), ("0.5 to 2 m", "0.30 m")),
+    (replace(CAMERA, axis_rad=0.1), ("floor from 5 m",)),
 ])  # fmt: skip
-def test_another_camera_than_the_one_that_was_learned_is_refused(other):
+def test_a_camera_too_low_or_high_or_without_floor_is_refused(other, words):
     tracker = cardboard_tracker()
-    with refused("panorama", "trained", "other network"):
+    with refused("panoramic camera", *words):
         tracker.check_cameras({"panorama": other})
-    with refused("panorama", "trained", "other network"):
+    with refused("panoramic camera", *words):
         tracker.update(Frame(images={"panorama": HALL}, time_s=0.0, calibrations={"panorama": other}))
     assert tracker.explanation is None
+
+
+def test_an_image_of_another_size_than_its_calibration_is_refused():
+    frame = Frame(images={"panorama": HALL[:100]}, time_s=0.0, calibrations={"panorama": CAMERA})
+    with refused("panorama", "480x120", "480x100"):
+        cardboard_tracker().update(frame)
 
 
 def test_a_camera_that_is_flat_or_unknown_is_refused():
