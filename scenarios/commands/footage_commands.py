@@ -26,7 +26,13 @@ from peopleboy.tracker.trackers import DEFAULT_TRACKER, LIVE_TRACKER
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.finished_runs.import_tracks import TrackImport
-    from peopleboy.scenarios.footage.options import FootageCamera, RawOptions, RgbdOptions, TrackOptions
+    from peopleboy.scenarios.footage.options import (
+        FootageCamera,
+        PanoramaOptions,
+        RawOptions,
+        RgbdOptions,
+        TrackOptions,
+    )
     from peopleboy.scenarios.footage.track_footage import ShowTracks, Tracked
     from peopleboy.tracker.footage.grey import Radiometry
     from peopleboy.tracker.footage.live_footage import LiveSource
@@ -34,7 +40,7 @@ if TYPE_CHECKING:
 
 _TRACKERS = (
     "detection, detection-live, contour, learned, thesis, colour, thermal, paper, rgbd or rgbd-printed (both "
-    "with --depth), or module:Class (your own)"
+    "with --depth), panoramic (with --panorama), or module:Class (your own)"
 )
 
 
@@ -62,8 +68,9 @@ class _Footage(PlainPath):
     metavar="GAIN,OFFSET",
     help="Conversion of 16-bit counts to degC: degC = GAIN * counts + OFFSET, or the word centikelvin.",
 )
+@options_of("scenarios.footage.options:RgbdOptions", "depth", "m_per_count", into="rgbd", is_optional=True)
 @options_of(
-    "scenarios.footage.options:RgbdOptions", "depth", "m_per_count", "odometry", into="rgbd", is_optional=True
+    "scenarios.footage.options:PanoramaOptions", "kind", "elevation_deg", into="panorama", is_optional=True
 )
 @options_of(
     "scenarios.footage.options:FootageCamera",
@@ -75,10 +82,21 @@ class _Footage(PlainPath):
 )
 @options_of(
     "scenarios.footage.options:TrackOptions",
-    *("rate_hz", "timestamps", "tracker", "gallery", "truth", "protocol", "boxes", "seed", "video"),
+    *(
+        "rate_hz",
+        "timestamps",
+        "odometry",
+        "tracker",
+        "gallery",
+        "truth",
+        "protocol",
+        "boxes",
+        "seed",
+        "video",
+    ),
     "overwrite",
-    tracker=f"Tracker to use: {_TRACKERS}.  [default: detection, detection-live for a live source, or rgbd "
-    "with --depth]",
+    tracker=f"Tracker to use: {_TRACKERS}.  [default: detection, detection-live for a live source, rgbd with "
+    "--depth, or panoramic with --panorama]",
 )
 @click.option("--detector", help=DETECTOR)
 @click.option(
@@ -96,6 +114,7 @@ def track(
     thermal: "GivenOptions[Radiometry]",
     scale: str | None,
     rgbd: "GivenOptions[RgbdOptions]",
+    panorama: "GivenOptions[PanoramaOptions]",
     camera: "GivenOptions[FootageCamera]",
     given: "GivenOptions[TrackOptions]",
     detector: str | None,
@@ -114,21 +133,24 @@ def track(
     while one is processed are dropped. Ctrl-C ends the tracking, and the files are written.
 
     With --depth and --depth-scale, people are tracked in colour and depth images, and tracks.parquet contains
-    their floor positions.
+    their floor positions. With --panorama and --camera-height-m, people are tracked all around an upright
+    360-degree camera, with their floor positions.
     """
-    from peopleboy.scenarios.footage.options import RGBD_TRACKER, parse_start
+    from peopleboy.scenarios.footage.options import PANORAMA_TRACKER, RGBD_TRACKER, parse_start
     from peopleboy.tracker.footage.grey import parse_scale
 
     source = _source(footage, raw)
     usual = DEFAULT_TRACKER if isinstance(source, Path) else LIVE_TRACKER
-    is_depth = rgbd.depth is not None
+    is_thermal = rgbd.depth is None and panorama.kind is None
+    usual = usual if panorama.kind is None else PANORAMA_TRACKER
     tracker = given.tracker or (usual if rgbd.depth is None else RGBD_TRACKER)
     options = given.make(
         footage=source,
         **{**files.values, "out": files.out or _default_out(source)},
         radiometry=thermal.make(scale=None if scale is None else parse_scale(scale)),
         rgbd=_rgbd(rgbd, camera),
-        mount=None if is_depth else _mount(camera),
+        panorama=_panorama(panorama, rgbd, camera),
+        mount=_mount(camera) if is_thermal else None,
         tracker=with_detector(tracker, detector),
         start=None if start is None else parse_start(start),
     )
@@ -194,6 +216,25 @@ def _rgbd(given: "GivenOptions[RgbdOptions]", camera: "GivenOptions[FootageCamer
     if given.m_per_count is None:
         raise BadInput("--depth needs --depth-scale, the metres per count: 0.001 for millimetres")
     return given.make(camera=camera.make())
+
+
+def _panorama(
+    given: "GivenOptions[PanoramaOptions]",
+    rgbd: "GivenOptions[RgbdOptions]",
+    camera: "GivenOptions[FootageCamera]",
+) -> "PanoramaOptions | None":
+    if given.kind is None:
+        if given.values:
+            raise BadInput("--elevation-deg: is for panoramas; add --panorama KIND, or leave it out")
+        return None
+    if rgbd.depth is not None:
+        raise BadInput("--panorama and --depth are for different cameras; give only one")
+    if camera.height_m is None or len(camera.values) > 1:
+        raise BadInput(
+            "--panorama: needs --camera-height-m, the camera's height above the floor, and no other options "
+            "of the camera"
+        )
+    return given.make(height_m=camera.height_m)
 
 
 def _print(tracked: "Tracked", options: "TrackOptions", output: Output) -> None:

@@ -18,7 +18,8 @@ from peopleboy.tracker.evaluation.protocols import Protocol
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.footage.live_footage import LiveSource, PixelFormat, RawFormat, parse_size
-from peopleboy.tracker.frame import DEPTH, THERMAL
+from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL
+from peopleboy.tracker.sensors.panorama.unrolling import PanoramaKind
 from peopleboy.tracker.tracker_names import is_detection_file, shown_name, split_name
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
@@ -107,6 +108,8 @@ DEFAULT_RATE_HZ: Final = 15.0
 """Frame rate of image folders: that of the robot's cameras, which the trackers are designed for."""
 RGBD_TRACKER: Final = "rgbd"
 """Default tracker for colour and depth images."""
+PANORAMA_TRACKER: Final = "panoramic"
+"""Default tracker for images of a 360-degree camera."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,13 +128,31 @@ class RgbdOptions:
         Metavar("M"),
     ]
     camera: FootageCamera = field(default_factory=FootageCamera)
-    odometry: Annotated[
-        Path | None,
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanoramaOptions:
+    """Kind and geometry of the images of a 360-degree camera."""
+
+    kind: Annotated[
+        PanoramaKind,
         Field(
-            description="CSV file of the camera's motion, with the columns advance_m, aside_m and "
-            "turn_deg and one row per image.  [default: the camera is stationary]"
+            alias="panorama",
+            description="Kind of the colour images of a 360-degree camera: equirectangular, the round image "
+            "of an upright fisheye lens or of a camera below a cone-shaped mirror, or the unrolled image of "
+            "the latter. Boxes are in the unrolled images.",
         ),
+    ]
+    elevation_deg: Annotated[
+        tuple[float, float] | None,
+        Field(
+            description="Elevations of the lower and the upper border of panoramas [deg]; of a round image, "
+            "those of its centre and its rim.  [default: square pixels around the horizon, or a fisheye "
+            "lens of 180 degrees]"
+        ),
+        Metavar("BOTTOM TOP"),
     ] = None
+    height_m: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,7 +188,8 @@ class TrackOptions:
     Attributes:
         footage: folder of images, a video or a live source, thermal; with `rgbd`, a folder of colour images.
         radiometry: meaning of thermal pixel values.
-        rgbd: depth images of the same view; None for thermal footage.
+        rgbd: depth images of the same view; None for other footage.
+        panorama: images of a 360-degree camera; None for other footage.
         mount: pose and field of view of the thermal camera, for positions on the floor; None if unknown.
         start: initial box of a person in the first image, or "truth" for the ground truth's; None to detect
             people.
@@ -184,6 +206,7 @@ class TrackOptions:
     ] = None
     radiometry: Radiometry = field(default_factory=Radiometry)
     rgbd: RgbdOptions | None = None
+    panorama: PanoramaOptions | None = None
     mount: FootageCamera | None = None
     calibration: Annotated[
         Path | None,
@@ -211,6 +234,13 @@ class TrackOptions:
         Field(
             description="Text file with the time of each image: a time, or a time and an image, per line."
             "  [default: the times in the names of the images or in the video, else even ones]"
+        ),
+    ] = None
+    odometry: Annotated[
+        Path | None,
+        Field(
+            description="With --depth or --panorama: CSV file of the camera's motion, with the columns "
+            "advance_m, aside_m and turn_deg and one row per image.  [default: the camera is stationary]"
         ),
     ] = None
     tracker: Annotated[str, Field(description="Tracker.")] = DEFAULT_TRACKER
@@ -254,6 +284,7 @@ class TrackOptions:
         for option, value in (
             ("--colour", self.colour),
             ("--depth", self.rgbd),
+            ("--panorama", self.panorama),
             ("--timestamps", self.timestamps),
             ("--truth", self.truth),
             ("--start", self.start),
@@ -269,6 +300,8 @@ class TrackOptions:
     @property
     def camera(self) -> str:
         """Name of the camera in whose image boxes are."""
+        if self.panorama is not None:
+            return PANORAMA
         return THERMAL if self.rgbd is None else DEPTH
 
     @property
@@ -284,10 +317,19 @@ class TrackOptions:
     @property
     def read(self) -> tuple[Path, ...]:
         """All input paths, which must not be overwritten."""
-        depth = () if self.rgbd is None else (self.rgbd.depth, self.rgbd.odometry)
+        depth = () if self.rgbd is None else (self.rgbd.depth,)
         detector = split_name(self.tracker)[1]
         detections = Path(detector) if detector is not None and is_detection_file(detector) else None
-        paths = (self.path, self.colour, self.truth, self.calibration, self.mask, *depth, detections)
+        paths = (
+            self.path,
+            self.colour,
+            self.truth,
+            self.calibration,
+            self.mask,
+            self.odometry,
+            *depth,
+            detections,
+        )
         return tuple(path for path in paths if path is not None)
 
 

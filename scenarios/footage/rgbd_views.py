@@ -63,8 +63,8 @@ class RgbdViews:
         self.rate_hz = rate_of(self._times_s) or self.rate_hz
         self._offsets = offsets_of(self._pairs.colour)
         self._odometry: list[Odometry] | None = None
-        if rgbd.odometry is not None:
-            self._odometry = load_odometry(rgbd.odometry, self.expected)
+        if options.odometry is not None:
+            self._odometry = load_odometry(options.odometry, self.expected)
         first = read_picture(self._pairs.colour[0], [])
         check_image(first, str(options.footage))
         self._camera = self._with_pose(rgbd.camera, (first.shape[1], first.shape[0]))
@@ -130,17 +130,17 @@ class RgbdViews:
 
     def about(self) -> dict[str, Any]:
         """Return the depth scale and the pose of the camera."""
-        rgbd = self._rgbd
+        odometry = self._options.odometry
         return {
-            "depth": rgbd.depth.name,
-            "depth_scale_m": rgbd.m_per_count,
+            "depth": self._rgbd.depth.name,
+            "depth_scale_m": self._rgbd.m_per_count,
             "camera": {
                 "height_m": self._geometry.position_m[2],
                 "pitch_deg": self._camera.pitch_deg or 0.0,
                 "focal_px": self._geometry.focal_px,
                 "centre_px": self._geometry.centre_px,
             },
-            "odometry": None if rgbd.odometry is None else rgbd.odometry.name,
+            "odometry": None if odometry is None else odometry.name,
         }
 
 

@@ -50,6 +50,8 @@ class ThermalViews:
     def __init__(self, options: TrackOptions) -> None:
         if options.tracker == COLOUR_TRACKER and options.colour is None:
             raise BadInput("--tracker colour: needs --colour FOLDER; add it, or give --tracker thermal")
+        if options.odometry is not None:
+            raise BadInput("--odometry: needs --depth or --panorama; add one of them, or leave it out")
         self._options = options
         self._images: ThermalImages | None = None
         self._mask = None if options.mask is None else read_mask(options.mask)

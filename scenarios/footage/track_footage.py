@@ -24,7 +24,7 @@ from peopleboy.tracker.evaluation.latency import write_latency
 from peopleboy.tracker.footage.box_kinds import BoxKind, torso_of
 from peopleboy.tracker.footage.footage_truth import GivenTruth, doubts, find_truth, load_truth
 from peopleboy.tracker.footage.grey import Polarity
-from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
+from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Frame
 from peopleboy.tracker.reproductions.contour.variants import VARIANTS
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Introducible, Tracker, explanation_of, is_own, make_tracker
@@ -203,6 +203,10 @@ def _lack(camera: str, options: TrackOptions) -> str:
         return "needs camera 'depth'; give --depth FOLDER"
     if options.rgbd is not None:
         return f"needs camera {camera!r}, but --depth gives depth and colour; leave --depth out"
+    if options.panorama is not None:
+        return f"needs camera {camera!r}, but --panorama gives panoramas; leave --panorama out"
+    if camera == PANORAMA:
+        return "needs camera 'panorama'; give --panorama KIND"
     return f"needs camera {camera!r}, which footage does not have"
 
 
@@ -244,6 +248,11 @@ def _what_to_look_at(options: TrackOptions) -> str:
         return (
             "is the camera's pose right (--camera-height-m, --pitch-deg)? Do people stand upright? Are they "
             "within depth range?"
+        )
+    if options.panorama is not None:
+        return (
+            "is the camera upright, and is its height right (--camera-height-m)? Are the elevations of the "
+            "borders right (--elevation-deg)? Are people within 7 m?"
         )
     is_black_hot = options.radiometry.polarity is Polarity.BLACK_HOT
     remedy = f"give --polarity {Polarity.WHITE_HOT if is_black_hot else Polarity.BLACK_HOT}"

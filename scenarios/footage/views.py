@@ -1,4 +1,4 @@
-"""Read footage of any kind as frames: thermal with optional colour, or colour with depth."""
+"""Read footage of any kind as frames: thermal with optional colour, colour with depth, or panoramas."""
 
 from collections.abc import Callable, Iterator
 from typing import Any, Protocol
@@ -7,6 +7,7 @@ from peopleboy.scenarios.drawing.overlay import Picture
 from peopleboy.scenarios.footage.options import (
     TrackOptions,
 )
+from peopleboy.scenarios.footage.panorama_views import PanoramaViews
 from peopleboy.scenarios.footage.rgbd_views import RgbdViews
 from peopleboy.scenarios.footage.thermal_views import ThermalViews
 from peopleboy.tracker.frame import Frame
@@ -56,9 +57,11 @@ class Views(Protocol):
 
 
 def open_views(options: TrackOptions) -> Views:
-    """Open thermal footage, or colour with depth.
+    """Open thermal footage, colour with depth, or panoramas.
 
     Raises:
-        BadInput: the footage cannot be read, or an option is for the other kind.
+        BadInput: the footage cannot be read, or an option is for another kind.
     """
+    if options.panorama is not None:
+        return PanoramaViews(options, options.panorama)
     return ThermalViews(options) if options.rgbd is None else RgbdViews(options, options.rgbd)

@@ -49,9 +49,11 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_run(SCENE, tmp_path_factory.mktemp("depth") / "run", "--frames")
 
 
-def frames(colour: Path, depth: Path, m_per_count: float = 0.001, **others: Any) -> list[Frame]:
-    rgbd = RgbdOptions(depth=depth, m_per_count=m_per_count, **others)
-    return list(open_views(TrackOptions(footage=colour, out=colour.parent / "out", rgbd=rgbd)))
+def frames(
+    colour: Path, depth: Path, m_per_count: float = 0.001, camera: FootageCamera | None = None, **others: Any
+) -> list[Frame]:
+    rgbd = RgbdOptions(depth=depth, m_per_count=m_per_count, camera=camera or FootageCamera())
+    return list(open_views(TrackOptions(footage=colour, out=colour.parent / "out", rgbd=rgbd, **others)))
 
 
 def options(depth: Path, scale: object = 0.001) -> tuple[object, ...]:
@@ -230,8 +232,8 @@ def test_depth_and_its_options_ask_for_each_other(tmp_path: Path) -> None:
     colour, depth = write_rgbd(tmp_path)
     out = ("--out", tmp_path / "out")
     assert_names(refusal(colour, *out, "--depth", depth), "--depth-scale", "0.001")
-    for option in ("--depth-scale", "--odometry"):
-        assert_names(refusal(colour, *out, option, 1), "--depth FOLDER")
+    assert_names(refusal(colour, *out, "--depth-scale", 1), "--depth FOLDER")
+    assert_names(refusal(colour, *out, "--odometry", depth), "--odometry", "--depth or --panorama")
     assert_names(refusal(colour, *out, "--tracker", "rgbd"), "rgbd", "--depth")
     assert not (tmp_path / "out").exists()
 
