@@ -8,7 +8,7 @@ every processor.
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from llvmlite import ir  # type: ignore[import-untyped]  # installed with Numba
+from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
