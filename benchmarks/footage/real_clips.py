@@ -29,10 +29,11 @@ CHOSEN_BY: Final = ("camel_01", "camel_02", "camel_08", "camel_11", "camel_21", 
 """The clips that may be used for tuning; all others are only for evaluation."""
 TRUTH: Final = "gt.txt"
 _PEOPLE: Final = replace(RULES[Protocol.PEOPLEBOY], ignored=tuple(kind for kind in CLASSES if kind != PERSON))
-PEERS: Final[Mapping[str, tuple[Literal["hog", "ssdlite"], float]]] = {
+PEERS: Final[Mapping[str, tuple[Literal["hog", "ssdlite", "nanodet"], float]]] = {
     "HOG x 2 + ByteTrack": ("hog", 2.0),
     "HOG x 3 + ByteTrack": ("hog", 3.0),
     "SSDLite + ByteTrack": ("ssdlite", 1.0),
+    "NanoDet + ByteTrack": ("nanodet", 1.0),
 }
 """Detector and enlargement of images per peer; HOG detects people from 96 px of the enlarged image on."""
 

