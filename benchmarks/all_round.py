@@ -136,7 +136,7 @@ class Play:
     @property
     def name(self) -> str:
         """Name of the run."""
-        return f"{self.scenario} {self.tracker} {self.camera} {self.seed}"
+        return " ".join(filter(None, (self.scenario, self.tracker, self.camera, str(self.seed))))
 
     def __call__(self, report_progress: ReportProgress) -> Played:  # noqa: ARG002
         """Execute the run."""
