@@ -111,16 +111,25 @@ def test_the_same_run_in_a_fresh_process_gives_the_same_tracks(came: Path, tmp_p
 @pytest.mark.parametrize(
     ("camera", "named"),
     [
-        ({"kind": "panorama", "mirror": "narrow"}, ("panorama", "deg down", "other network")),
-        ({"kind": "panorama", "width_px": 360}, ("360x", "480x120", "other network")),
+        ({"kind": "panorama", "mirror": {"apex_m": 2.4}}, ("panoramic camera", "0.5 to 2 m", "2.4")),
         ({"kind": "colour"}, ("'panorama'", "calibrated panoramic camera")),
     ],
-    ids=["another mirror", "another size", "a flat one"],
+    ids=["too high", "a flat one"],
 )
-def test_a_camera_that_nobody_learned_from_is_refused_before_anything_is_written(
+def test_a_camera_that_cannot_be_used_is_refused_before_anything_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], tracker: str, camera: object, named: tuple[str, ...]
 ) -> None:
     path = scene_file(tmp_path, panorama=camera)
     said = refusal(capsys, "run", path, "--tracker", tracker, "--out", tmp_path / "none")
     assert_names(said, *named)
     assert not (tmp_path / "none").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("camera", [{"mirror": {"apex_m": 1.3}}, {"width_px": 720, "height_px": 180}])
+def test_people_are_tracked_with_other_cameras(tmp_path: Path, camera: dict[str, object]) -> None:
+    path, out = scene_file(tmp_path, panorama={"kind": "panorama", **camera}), tmp_path / "out"
+    assert run_cli("run", path, "--tracker", "panoramic", "--out", out, "--no-recording") == 0
+    lines = (out / "tracks" / "panorama.txt").read_text().split()
+    assert len(lines) > 20
+    assert run_cli("evaluate", out, "--camera", "panorama") == 0

@@ -10,9 +10,8 @@ import pytest
 from peopleboy.studies.training.export_onnx import NETWORKS, export_onnx
 from peopleboy.tracker.networks.inference import CropNetwork
 from peopleboy.tracker.networks.mask_network import INPUTS
-from peopleboy.tracker.networks.weights_archive import SHIPPED
 from peopleboy.tracker.reproductions.panoramic.distance_network import shipped_models
-from peopleboy.tracker.sensors.panorama.people_foreground import FILE, ForegroundModel
+from peopleboy.tracker.sensors.panorama.people_foreground import shipped_foreground
 from peopleboy.tracker.sensors.panorama.place_model import PlaceModel
 from peopleboy.tracker.sensors.thermal.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from tests.helpers.calls.command_line import refusal, run_cli
@@ -66,7 +65,7 @@ def test_networks_of_distances_agree_and_none_is_missing(folder: Path) -> None:
 
 
 def test_the_segmentation_agrees_also_over_the_seam(folder: Path) -> None:
-    model = ForegroundModel.load(SHIPPED / FILE)
+    model = shipped_foreground()
     squares = draw(INPUTS, model.view.height_px // 4, model.view.width_px // 4)
     (found,) = outputs(folder, "foreground", squares=squares[None])
     np.testing.assert_allclose(found[0, 0], model.network.predict(squares), atol=1e-4)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
+from peopleboy.geometry.small_matrices import inverse
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame
 from peopleboy.tracker.track import Box
 
@@ -108,7 +109,7 @@ class LevelView:
             return cls(calibration, shape, None)
         level = pose.copy()
         level[:3, :3] = _level_axes(pose[:3, 2])
-        level_from_pixel = level[:3, :3].T @ pose[:3, :3] @ np.linalg.inv(intrinsics)
+        level_from_pixel = level[:3, :3].T @ pose[:3, :3] @ inverse(intrinsics)
         rows, columns = shape
         corners = np.array([[u, v, 1.0] for u in (0.0, columns - 1.0) for v in (0.0, rows - 1.0)])
         rays = corners @ level_from_pixel.T
@@ -142,7 +143,7 @@ class LevelView:
         middle, torso = left + width / 2.0, top + _TORSO * height
         ends = [(middle, top), (middle, top + height), (left, torso), (left + width, torso)]
         pixels = np.stack([np.stack(end, axis=1) for end in ends])
-        back = np.linalg.inv(self.level_from_image)
+        back = inverse(self.level_from_image)
         (_, first), (_, last), (start, _), (end, _) = cv2.perspectiveTransform(pixels, back).transpose(
             0, 2, 1
         )
@@ -151,7 +152,7 @@ class LevelView:
 
 def _deepen(depth: Depth, level_from_image: Floats) -> Depth:
     """Return a depth image (H, W) along the level axis, from readings along the camera's."""
-    across, down, straight = np.linalg.inv(level_from_image)[2]
+    across, down, straight = inverse(level_from_image)[2]
     rows, columns = (np.arange(count) for count in depth.shape)
     by_level = across * columns + down * rows[:, None] + straight  # depth of each ray by its level depth
     return np.asarray(np.minimum(np.rint(depth / np.maximum(by_level, 0.1)), 65535.0), np.uint16)
