@@ -376,3 +376,19 @@ def colour_picture(picture: NDArray[Any], where: str) -> NDArray[np.uint8]:
     if picture.dtype != np.uint8:
         raise BadInput(f"{where}: images must be 8-bit, got {picture.dtype}")
     return np.repeat(picture[..., None], 3, axis=2) if picture.ndim == 2 else np.ascontiguousarray(picture)
+
+
+def refuse_thermal_options(options: TrackOptions, option: str) -> None:
+    """Refuse options of thermal images together with one that names other images, such as `--depth`.
+
+    Raises:
+        BadInput: one is given.
+    """
+    for given, path in (("--calibration", options.calibration), ("--mask", options.mask)):
+        if path is not None:
+            raise BadInput(f"{given}: is for thermal images; leave it out, or leave {option} out")
+    if options.colour is not None or options.radiometry != Radiometry():
+        raise BadInput(
+            f"{option}: --colour, --temperature-range, --scale and --polarity are for thermal images only; "
+            "FOLDER itself holds the colour images"
+        )

@@ -11,8 +11,8 @@ from peopleboy.scenarios.footage.options import (
     PanoramaOptions,
     TrackOptions,
     colour_picture,
+    refuse_thermal_options,
 )
-from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.footage.image_sequences import PictureFolder, open_footage
 from peopleboy.tracker.footage.picture_names import offsets_of
 from peopleboy.tracker.footage.read_picture import size_of
@@ -33,7 +33,7 @@ class PanoramaViews:
     stop: Callable[[], None] | None = None
 
     def __init__(self, options: TrackOptions, panorama: PanoramaOptions) -> None:
-        _check_kind(options)
+        refuse_thermal_options(options, "--panorama")
         assert options.path is not None  # `TrackOptions` refuses panoramas of a live source
         self._options, self._panorama = options, panorama
         self._footage = open_footage(options.path)
@@ -69,6 +69,8 @@ class PanoramaViews:
             if size != self._unrolling.size:
                 first = "x".join(map(str, self._unrolling.size))
                 raise BadInput(f"{where}: must have the size of the first, {first}, got {size_of(picture)}")
+            if self._odometry is not None and number >= len(self._odometry):
+                raise BadInput(f"{self._options.odometry}: has {number} rows, but there are more images")
             own = self._footage.times_s if self._options.rate_hz is None else None
             yield Frame(
                 images={PANORAMA: self._unrolling.image(picture)},
@@ -90,13 +92,3 @@ class PanoramaViews:
             "camera": {"height_m": self._panorama.height_m},
             "odometry": None if odometry is None else odometry.name,
         }
-
-
-def _check_kind(options: TrackOptions) -> None:
-    for option, path in (("--calibration", options.calibration), ("--mask", options.mask)):
-        if path is not None:
-            raise BadInput(f"{option}: is for thermal images; leave it out, or leave --panorama out")
-    if options.colour is not None or options.radiometry != Radiometry():
-        raise BadInput(
-            "--panorama: --colour, --temperature-range, --scale and --polarity are for thermal images only"
-        )

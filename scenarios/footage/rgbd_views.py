@@ -15,9 +15,9 @@ from peopleboy.scenarios.footage.options import (
     RgbdOptions,
     TrackOptions,
     colour_picture,
+    refuse_thermal_options,
 )
 from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
-from peopleboy.tracker.footage.grey import Radiometry
 from peopleboy.tracker.footage.image_sequences import PictureFolder, folders_in
 from peopleboy.tracker.footage.picture_names import offsets_of, pictures_in
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
@@ -47,7 +47,7 @@ class RgbdViews:
     stop: Callable[[], None] | None = None
 
     def __init__(self, options: TrackOptions, rgbd: RgbdOptions) -> None:
-        _check_kind(options)
+        refuse_thermal_options(options, "--depth")
         self._options, self._rgbd = options, rgbd
         self._counts = DepthCounts(rgbd.depth, rgbd.m_per_count)
         folders = [_folder(path, image, rgbd.depth) for path, image in _folders(options, rgbd)]
@@ -142,17 +142,6 @@ class RgbdViews:
             },
             "odometry": None if odometry is None else odometry.name,
         }
-
-
-def _check_kind(options: TrackOptions) -> None:
-    for option, path in (("--calibration", options.calibration), ("--mask", options.mask)):
-        if path is not None:
-            raise BadInput(f"{option}: is for thermal images; leave it out, or leave --depth out")
-    if options.colour is not None or options.radiometry != Radiometry():
-        raise BadInput(
-            "--depth: --colour, --temperature-range, --scale and --polarity are for thermal images only; "
-            "FOLDER itself holds the colour images"
-        )
 
 
 def _folders(options: TrackOptions, rgbd: RgbdOptions) -> tuple[tuple[Path, str], tuple[Path, str]]:
